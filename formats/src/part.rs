@@ -1,0 +1,58 @@
+//! A part as it was authored: flat convex surfaces with materials, in the part's own coordinates.
+
+use crate::geometry::Corners;
+use crate::ids::MaterialId;
+use serde::{Deserialize, Serialize};
+
+/// What is baked once and placed many times. The importer guarantees: every coordinate is finite, every surface is
+/// planar and convex with an area above zero, no two surfaces coincide with the same orientation, and every material
+/// id is valid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The root node's name, or the file's stem.
+    pub name: String,
+    /// The surfaces, metres, relative to the part's origin.
+    pub surfaces: Vec<Surface>,
+    /// The materials that the surfaces name.
+    pub materials: Vec<Material>,
+    /// Element size asked for by the file's author (`extras.element_size`), metres.
+    pub element_size: Option<f64>,
+    /// Local solver asked for by the file's author (`extras.local_solver`).
+    pub local_solver: Option<LocalSolver>,
+}
+
+/// A triangle or parallelogram of the source mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface {
+    /// Corners, counter-clockwise seen from the front.
+    pub corners: Corners,
+    /// Its material.
+    pub material: MaterialId,
+}
+
+/// What a surface does with light. Linear RGB, BT.709 primaries.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Material {
+    /// The material's name in the file, or empty.
+    pub name: String,
+    /// Diffuse reflectance ρ, 0..1, from glTF's base colour.
+    pub reflectance: [f64; 3],
+    /// Emission E = πL, W/m², where the radiance L is emissiveFactor × emissive strength.
+    pub emission: [f64; 3],
+    /// Whether the back reflects and emits as the front does; a one-sided surface is black on its back.
+    pub double_sided: bool,
+}
+
+/// How a part's own equilibrium is found. The answer does not depend on it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LocalSolver {
+    /// LU factors of I − ρF, kept with the part.
+    Direct,
+    /// Gauss-Seidel sweeps over the stored rows.
+    GaussSeidel,
+    /// Progressive refinement: shoot the largest unshot radiosity first (Southwell).
+    Progressive,
+    /// GMRES on the stored rows.
+    Iterative,
+}

@@ -1,0 +1,85 @@
+//! A scene: parts, where they stand, who looks, and what lights are not surfaces.
+
+use crate::ids::PartId;
+use crate::part::Part;
+use glam::{DAffine3, DVec3};
+use std::path::PathBuf;
+
+/// Parts and their instances, as the importer found them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// The file's stem.
+    pub name: String,
+    /// The file it came from.
+    pub file: PathBuf,
+    /// Every file that was read, the scene's own first: what a build tool must watch.
+    pub sources: Vec<PathBuf>,
+    /// The distinct parts.
+    pub parts: Vec<Part>,
+    /// The placed parts, in the order of the file's root nodes.
+    pub instances: Vec<Instance>,
+    /// Cameras, in the order of the file.
+    pub cameras: Vec<Camera>,
+    /// Lights that are not surfaces.
+    pub lights: Vec<PunctualLight>,
+    /// What was ignored, dropped or repaired on the way in, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A part placed in a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Instance {
+    /// The root node's name.
+    pub name: String,
+    /// The part that stands there.
+    pub part: PartId,
+    /// Part coordinates → scene coordinates: a rotation, perhaps mirrored, uniformly scaled, and moved. Anything else
+    /// is another part, so form factors are the same in every instance.
+    pub placement: DAffine3,
+    /// Factor on the part's emission in this place (`extras.emission_scale`), 1 unless told.
+    pub emission_scale: f64,
+}
+
+/// A perspective camera that looks along −Z with +Y up, as glTF has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    /// The node's name.
+    pub name: String,
+    /// Camera coordinates → scene coordinates.
+    pub placement: DAffine3,
+    /// Vertical field of view, radians.
+    pub vertical_fov: f64,
+    /// Width over height, where the file gives one.
+    pub aspect: Option<f64>,
+}
+
+/// A light of KHR_lights_punctual.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PunctualLight {
+    /// The node's name.
+    pub name: String,
+    /// Where it stands, metres.
+    pub position: DVec3,
+    /// Where it shines to, unit.
+    pub direction: DVec3,
+    /// Linear RGB × intensity: candela for points and spots, lux for directional lights.
+    pub intensity: [f64; 3],
+    /// Which of the extension's three lights it is.
+    pub kind: LightKind,
+}
+
+/// The three lights of KHR_lights_punctual.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LightKind {
+    /// Shines evenly to all sides.
+    Point,
+    /// Shines in a cone; half angles in radians.
+    Spot {
+        /// Full intensity up to here.
+        inner: f64,
+        /// None past here.
+        outer: f64,
+    },
+    /// Parallel rays.
+    Directional,
+}
