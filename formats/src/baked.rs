@@ -29,4 +29,44 @@ pub struct LocalEquilibrium {
     pub solver: LocalSolver,
     /// Radiosity B, W/m², linear RGB, one row an element.
     pub radiosity: Vec<Rgb>,
+    /// The factors of I − ρF_kk; only the direct solver keeps them.
+    pub factors: Option<Factors>,
+}
+
+/// I − ρF_kk factored. Colour channels with the same reflectance everywhere share their factors.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Factors {
+    /// One LU a distinct channel, at most three.
+    pub channels: Vec<Lu>,
+    /// Which of `channels` red, green and blue use.
+    pub of_channel: [u32; 3],
+}
+
+/// P A = L U of a square matrix A, dense, with row pivoting.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Lu {
+    /// Number of rows and of columns.
+    pub size: u32,
+    /// L below the diagonal (its own diagonal is 1), U on and above it; `size × size`, column-major.
+    pub packed: Vec<f64>,
+    /// The permutation: row i of L U is row `rows[i]` of A.
+    pub rows: Vec<u32>,
+}
+
+/// What a part file holds: all that depends on geometry and settings alone, so a repaint keeps it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedGeometry {
+    /// Elements and faces, in the part's own coordinates.
+    pub geometry: Geometry,
+    /// F_kk with nothing but the part itself in the way, `elements × elements`.
+    pub self_block: Rows,
+}
+
+/// What a light file holds: all that depends on reflectance and emission too.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BakedLight {
+    /// Reflectance and emission, one row an element.
+    pub optics: Optics,
+    /// The part's light on its own.
+    pub local: LocalEquilibrium,
 }

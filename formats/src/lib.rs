@@ -12,7 +12,7 @@ mod rows;
 mod scene;
 mod solution;
 
-pub use baked::{BakedPart, LocalEquilibrium};
+pub use baked::{BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
 pub use error::{Error, Result};
 pub use geometry::{Corners, Element, Face, Geometry, Optics};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
