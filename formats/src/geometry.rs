@@ -23,6 +23,21 @@ impl Corners {
         Self { points, count: 4 }
     }
 
+    /// The corners as twelve coordinates; a triangle's last corner comes twice.
+    pub(crate) fn padded(&self) -> [f64; 12] {
+        std::array::from_fn(|i| self.points[i / 3][i % 3])
+    }
+
+    /// The polygon of `count` corners from [`Corners::padded`], unless `count` is neither 3 nor 4.
+    pub(crate) fn from_padded(coordinates: &[f64; 12], count: u32) -> Option<Self> {
+        let [a, b, c, d] = std::array::from_fn(|i| DVec3::from_slice(&coordinates[3 * i..]));
+        match count {
+            3 => Some(Self::triangle([a, b, c])),
+            4 => Some(Self::quad([a, b, c, d])),
+            _ => None,
+        }
+    }
+
     /// The corners as a slice of 3 or 4 points.
     pub fn as_slice(&self) -> &[DVec3] {
         &self.points[..self.count as usize]

@@ -4,19 +4,27 @@
 //! compute on these types; this crate only says what they are and how they lie on disk.
 
 mod baked;
+mod container;
 mod error;
+mod fingerprint;
 mod geometry;
 mod ids;
 mod part;
 mod rows;
 mod scene;
 mod solution;
+mod store;
+mod stored;
 
 pub use baked::{BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
+pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
 pub use error::{Error, Result};
+pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
 pub use rows::{Rgb, Rows};
 pub use scene::{Camera, Instance, LightKind, PunctualLight, Scene};
 pub use solution::Solution;
+pub use store::{Lookup, Store};
+pub use stored::Stored;

@@ -32,6 +32,31 @@ impl Rows {
         block
     }
 
+    /// A block from its three arrays as [`Rows::arrays`] gives them, or what is wrong with them.
+    pub(crate) fn from_arrays(
+        senders: u32,
+        starts: Vec<u64>,
+        columns: Vec<u32>,
+        values: Vec<f64>,
+    ) -> Result<Self, String> {
+        if columns.len() != values.len() {
+            return Err(format!("{} columns for {} form factors", columns.len(), values.len()));
+        }
+        if starts.first() != Some(&0) || starts.last() != Some(&(values.len() as u64)) || !starts.is_sorted()
+        {
+            return Err(format!("rows that do not divide {} form factors", values.len()));
+        }
+        match columns.iter().find(|&&column| column >= senders) {
+            Some(column) => Err(format!("sender {column} of {senders}")),
+            None => Ok(Self { senders, starts, columns, values }),
+        }
+    }
+
+    /// Where each row begins (and the last ends), the columns, and the values.
+    pub(crate) fn arrays(&self) -> (&[u64], &[u32], &[f64]) {
+        (&self.starts, &self.columns, &self.values)
+    }
+
     /// Number of rows.
     pub fn receivers(&self) -> usize {
         self.starts.len() - 1

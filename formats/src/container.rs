@@ -1,0 +1,103 @@
+//! The one file format: a fixed header, two messages, then arrays, each compressed on its own. `FORMAT.md` draws it.
+//!
+//! Comes in: metadata and slices of numbers. Goes out: the same, or an [`Error`](crate::Error). Every byte is covered
+//! by a checksum that is compared before the byte is believed, so a file that is damaged, foreign or of another
+//! version is never mistaken for a good one.
+
+mod frame;
+mod reader;
+mod writer;
+
+pub use reader::Reader;
+pub use writer::Writer;
+
+use crate::fingerprint::Manifest;
+use serde::{Deserialize, Serialize};
+
+#[cfg(not(target_endian = "little"))]
+compile_error!("arrays are written as they lie in memory, which must be little-endian");
+
+/// The version this build writes, and the only one it reads.
+pub const FORMAT_VERSION: u32 = 1;
+
+const MAGIC: [u8; 8] = *b"EQUILUX\0";
+const HEADER_LENGTH: usize = 56;
+/// Far above any manifest; keeps a crafted length from asking for memory.
+const MESSAGES_LIMIT: u64 = 1 << 24;
+
+/// What a file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Geometry and form factors of a part.
+    Part,
+    /// Optics and local equilibrium of a part.
+    Light,
+    /// A block of form factors between two instances.
+    Coupling,
+    /// Only a manifest: what something was last made from.
+    Manifest,
+}
+
+impl Kind {
+    /// The four bytes in the header.
+    fn code(self) -> [u8; 4] {
+        match self {
+            Self::Part => *b"PART",
+            Self::Light => *b"LGHT",
+            Self::Coupling => *b"COUP",
+            Self::Manifest => *b"MANI",
+        }
+    }
+
+    /// The word that file names and messages use.
+    pub fn noun(self) -> &'static str {
+        match self {
+            Self::Part => "part",
+            Self::Light => "light",
+            Self::Coupling => "coupling",
+            Self::Manifest => "manifest",
+        }
+    }
+}
+
+/// A number that arrays may hold.
+pub trait Number: bytemuck::Pod {
+    /// Its name in the index.
+    const NAME: &'static str;
+}
+
+macro_rules! number {
+    ($($number:ident)*) => {
+        $(impl Number for $number {
+            const NAME: &'static str = stringify!($number);
+        })*
+    };
+}
+number!(u16 u32 u64 f32 f64);
+
+/// The first of the two messages. The second is the metadata, whose type only the reader of that kind knows.
+#[derive(Debug, Serialize, Deserialize)]
+struct Index {
+    manifest: Manifest,
+    arrays: Vec<ArrayEntry>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+struct ArrayEntry {
+    name: String,
+    number: String,
+    count: u64,
+    /// Bytes of the compressed frame.
+    length: u64,
+    /// blake3 of the compressed frame.
+    checksum: [u8; 32],
+}
+
+/// The header up to its checksum.
+fn header(kind: [u8; 4], messages_length: u64) -> Vec<u8> {
+    [&MAGIC[..], &FORMAT_VERSION.to_le_bytes(), &kind, &messages_length.to_le_bytes()].concat()
+}
+
+fn checksum(header: &[u8], messages: &[u8]) -> [u8; 32] {
+    *blake3::Hasher::new().update(header).update(messages).finalize().as_bytes()
+}

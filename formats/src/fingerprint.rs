@@ -1,0 +1,160 @@
+//! One manifest says what a result was made from. It gives both the key under which the result is cached and the
+//! sentence that says why it has to be made again, so the two cannot drift apart.
+//!
+//! Comes in: labelled values and digests of content, never times or file names. Goes out: keys and sentences.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The blake3 hash of some content.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Digest([u8; 32]);
+
+/// The hash of a manifest: the name under which what was made from it is cached.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct Key(Digest);
+
+impl fmt::Display for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&blake3::Hash::from_bytes(self.0).to_hex())
+    }
+}
+
+impl fmt::Debug for Digest {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl fmt::Display for Key {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+impl fmt::Debug for Key {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        fmt::Display::fmt(&self.0, f)
+    }
+}
+
+impl From<Key> for Digest {
+    fn from(key: Key) -> Self {
+        key.0
+    }
+}
+
+/// Content on its way to a [`Digest`]. Each piece is hashed with its length, so that `ab, c` and `a, bc` differ.
+#[derive(Debug, Clone, Default)]
+pub struct Content(blake3::Hasher);
+
+impl Content {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds bytes: a text, or integers through `bytemuck::cast_slice`.
+    pub fn bytes(mut self, bytes: impl AsRef<[u8]>) -> Self {
+        let bytes = bytes.as_ref();
+        self.0.update(&(bytes.len() as u64).to_le_bytes());
+        self.0.update(bytes);
+        self
+    }
+
+    /// Adds numbers. −0 counts as 0, for the two are equal and mean the same place.
+    pub fn f64s(self, values: &[f64]) -> Self {
+        let unsigned_zeros: Vec<f64> = values.iter().map(|value| value + 0.0).collect();
+        self.bytes(bytemuck::cast_slice::<f64, u8>(&unsigned_zeros))
+    }
+
+    /// The digest of all that was added, in its order.
+    pub fn digest(&self) -> Digest {
+        Digest(*self.0.finalize().as_bytes())
+    }
+}
+
+/// What a result was made from, as an ordered list of labelled entries.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Manifest {
+    entries: Vec<Entry>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+struct Entry {
+    label: String,
+    value: Value,
+}
+
+/// A setting is short enough to be told; of larger content only a digest is kept.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Value {
+    Setting(String),
+    Digest(Digest),
+}
+
+impl Manifest {
+    /// A manifest without entries.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a setting, with its unit: `("element size", "0.25 m")`. Panics when the label is taken.
+    pub fn setting(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
+        self.with(label.into(), Value::Setting(value.to_string()))
+    }
+
+    /// Adds content by its digest, or another result by its key. Panics when the label is taken.
+    pub fn digest(self, label: impl Into<String>, digest: impl Into<Digest>) -> Self {
+        self.with(label.into(), Value::Digest(digest.into()))
+    }
+
+    fn with(mut self, label: String, value: Value) -> Self {
+        assert!(self.value(&label).is_none(), "the manifest already has an entry {label:?}");
+        self.entries.push(Entry { label, value });
+        self
+    }
+
+    fn value(&self, label: &str) -> Option<&Value> {
+        self.entries.iter().find(|entry| entry.label == label).map(|entry| &entry.value)
+    }
+
+    /// The key of whatever is made from exactly this.
+    pub fn key(&self) -> Key {
+        let content = self.entries.iter().fold(Content::new(), |content, entry| {
+            let content = content.bytes(&entry.label);
+            match &entry.value {
+                Value::Setting(text) => content.bytes("setting").bytes(text),
+                Value::Digest(digest) => content.bytes("digest").bytes(digest.0),
+            }
+        });
+        Key(content.digest())
+    }
+
+    /// Why a result made from `old` does not serve: one clause an entry that differs, or nothing if the keys agree.
+    pub fn difference(&self, old: &Manifest) -> Option<String> {
+        if self == old {
+            return None;
+        }
+        let differing = self.entries.iter().filter_map(|entry| entry.clause(old.value(&entry.label)));
+        let gone = old.entries.iter().filter(|entry| self.value(&entry.label).is_none());
+        let clauses: Vec<_> = differing.chain(gone.map(|entry| format!("{} is gone", entry.label))).collect();
+        // The key depends on the order too, and a new key without a reason would be a riddle.
+        Some(if clauses.is_empty() { "the order of the inputs changed".into() } else { clauses.join("; ") })
+    }
+}
+
+impl Entry {
+    /// How this entry differs from its `old` value, if it does.
+    fn clause(&self, old: Option<&Value>) -> Option<String> {
+        let label = &self.label;
+        match (old, &self.value) {
+            (Some(old), new) if old == new => None,
+            (Some(Value::Setting(old)), Value::Setting(new)) => Some(format!("{label} was {old}, is {new}")),
+            (Some(_), _) => Some(format!("{label} changed")),
+            (None, Value::Setting(new)) => Some(format!("{label} is new, {new}")),
+            (None, Value::Digest(_)) => Some(format!("{label} is new")),
+        }
+    }
+}

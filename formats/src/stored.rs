@@ -1,0 +1,51 @@
+//! How baked things lie in a container: each as a handful of plain arrays, checked again when they are read.
+//!
+//! The checksums already rule out damage. These checks hold a file to what the types promise, so that whoever
+//! computes on them need not ask again.
+
+mod geometry;
+mod light;
+mod rows;
+
+use crate::container::{Kind, Number, Reader, Writer};
+use crate::error::Result;
+use crate::fingerprint::Manifest;
+
+/// Something that has a file of its own in the cache.
+pub trait Stored: Sized {
+    /// The kind of its file.
+    const KIND: Kind;
+
+    /// The file for `self`, which was made from what `manifest` lists.
+    fn write(&self, manifest: &Manifest) -> Writer;
+
+    /// Reads it back, equal to the last bit.
+    fn read(reader: &mut Reader) -> Result<Self>;
+}
+
+/// Fails with `problem` unless `fine`.
+fn check(reader: &Reader, fine: bool, problem: impl FnOnce() -> String) -> Result<()> {
+    if fine { Ok(()) } else { Err(reader.damaged(problem())) }
+}
+
+/// An array that must hold `count` numbers.
+fn array_of<T: Number>(reader: &mut Reader, name: &str, count: usize) -> Result<Vec<T>> {
+    let values = reader.array(name)?;
+    check(reader, values.len() == count, || format!("{} {name} instead of {count}", values.len()))?;
+    Ok(values)
+}
+
+/// An array of finite numbers.
+fn finite_array(reader: &mut Reader, name: &str) -> Result<Vec<f64>> {
+    let values = reader.array::<f64>(name)?;
+    check(reader, values.iter().all(|value| value.is_finite()), || format!("{name} that are not finite"))?;
+    Ok(values)
+}
+
+/// Rows of `N` finite numbers.
+fn finite_rows<const N: usize>(reader: &mut Reader, name: &str) -> Result<Vec<[f64; N]>> {
+    let values = finite_array(reader, name)?;
+    let (rows, rest) = values.as_chunks::<N>();
+    check(reader, rest.is_empty(), || format!("{} {name}, not a multiple of {N}", values.len()))?;
+    Ok(rows.to_vec())
+}

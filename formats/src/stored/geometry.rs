@@ -1,0 +1,87 @@
+//! The part file: elements and faces by their corners, and the self block. Normals, centroids and areas are worked
+//! out again from the same corners by the same code, so they come back to the last bit.
+
+use super::rows::{read_rows, write_rows};
+use super::{Stored, array_of, check, finite_rows};
+use crate::baked::BakedGeometry;
+use crate::container::{Kind, Reader, Writer};
+use crate::error::Result;
+use crate::fingerprint::Manifest;
+use crate::geometry::{Corners, Element, Face, Geometry};
+use crate::ids::{FaceId, MaterialId};
+use glam::DVec3;
+
+impl Stored for BakedGeometry {
+    const KIND: Kind = Kind::Part;
+
+    fn write(&self, manifest: &Manifest) -> Writer {
+        let mut writer = Writer::new(Self::KIND, manifest, &());
+        write_elements(&self.geometry.elements, &mut writer);
+        write_faces(&self.geometry.faces, &mut writer);
+        write_rows(&self.self_block, &mut writer);
+        writer
+    }
+
+    fn read(reader: &mut Reader) -> Result<Self> {
+        let faces = read_faces(reader)?;
+        let elements = read_elements(reader, faces.len())?;
+        let self_block = read_rows(reader, elements.len() as u32)?;
+        check(reader, self_block.receivers() == elements.len(), || {
+            format!("{} rows for {} elements", self_block.receivers(), elements.len())
+        })?;
+        Ok(Self { geometry: Geometry { elements, faces }, self_block })
+    }
+}
+
+fn write_elements(elements: &[Element], writer: &mut Writer) {
+    let column = |value: fn(&Element) -> u32| elements.iter().map(value).collect::<Vec<_>>();
+    let corners: Vec<f64> = elements.iter().flat_map(|element| element.corners.padded()).collect();
+    writer.array("element corners", &corners);
+    writer.array("element corner counts", &column(|element| element.corners.as_slice().len() as u32));
+    writer.array("element materials", &column(|element| element.material.0));
+    writer.array("element faces", &column(|element| element.face.0));
+}
+
+fn read_elements(reader: &mut Reader, face_count: usize) -> Result<Vec<Element>> {
+    let corners = finite_rows::<12>(reader, "element corners")?;
+    let counts = array_of::<u32>(reader, "element corner counts", corners.len())?;
+    let materials = array_of::<u32>(reader, "element materials", corners.len())?;
+    let faces = array_of::<u32>(reader, "element faces", corners.len())?;
+
+    let mut elements = Vec::with_capacity(corners.len());
+    for (i, coordinates) in corners.iter().enumerate() {
+        let corners = Corners::from_padded(coordinates, counts[i])
+            .ok_or_else(|| reader.damaged(format!("element {i} with {} corners", counts[i])))?;
+        let element = Element::new(corners, MaterialId(materials[i]), FaceId(faces[i]));
+        check(reader, element.normal.is_finite(), || format!("element {i} without an area"))?;
+        check(reader, element.face.index() < face_count, || {
+            format!("element {i} in face {} of {face_count}", faces[i])
+        })?;
+        elements.push(element);
+    }
+    Ok(elements)
+}
+
+fn write_faces(faces: &[Face], writer: &mut Writer) {
+    let counts: Vec<u32> = faces.iter().map(|face| face.corners.len() as u32).collect();
+    let corners: Vec<f64> = faces.iter().flat_map(|face| &face.corners).flat_map(DVec3::to_array).collect();
+    writer.array("face corner counts", &counts);
+    writer.array("face corners", &corners);
+}
+
+fn read_faces(reader: &mut Reader) -> Result<Vec<Face>> {
+    let counts = reader.array::<u32>("face corner counts")?;
+    let corners = finite_rows::<3>(reader, "face corners")?;
+    let mut rest = corners.iter().copied().map(DVec3::from_array);
+    let mut faces = Vec::with_capacity(counts.len());
+    for (i, &count) in counts.iter().enumerate() {
+        check(reader, count >= 3 && count as usize <= rest.len(), || {
+            format!("face {i} with {count} corners, {} being left", rest.len())
+        })?;
+        let face = Face::new(rest.by_ref().take(count as usize).collect());
+        check(reader, face.normal.is_finite(), || format!("face {i} without an area"))?;
+        faces.push(face);
+    }
+    check(reader, rest.len() == 0, || format!("{} corners without a face", rest.len()))?;
+    Ok(faces)
+}

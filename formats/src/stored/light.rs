@@ -1,0 +1,91 @@
+//! The light file: optics, local equilibrium, and the factors of the direct solver.
+
+use super::{Stored, array_of, check, finite_array, finite_rows};
+use crate::baked::{BakedLight, Factors, LocalEquilibrium, Lu};
+use crate::container::{Kind, Reader, Writer};
+use crate::error::Result;
+use crate::fingerprint::Manifest;
+use crate::geometry::Optics;
+use crate::part::LocalSolver;
+use crate::rows::Rgb;
+use serde::{Deserialize, Serialize};
+
+#[derive(Serialize, Deserialize)]
+struct Meta {
+    solver: LocalSolver,
+    factors: Option<FactorsMeta>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FactorsMeta {
+    channels: usize,
+    of_channel: [u32; 3],
+}
+
+impl Stored for BakedLight {
+    const KIND: Kind = Kind::Light;
+
+    fn write(&self, manifest: &Manifest) -> Writer {
+        let factors = self.local.factors.as_ref();
+        let factors_meta =
+            factors.map(|f| FactorsMeta { channels: f.channels.len(), of_channel: f.of_channel });
+        let meta = Meta { solver: self.local.solver, factors: factors_meta };
+        let mut writer = Writer::new(Self::KIND, manifest, &meta);
+        writer.array("reflectance", self.optics.reflectance.as_flattened());
+        writer.array("emission", self.optics.emission.as_flattened());
+        writer.array("radiosity", self.local.radiosity.as_flattened());
+        for (i, lu) in factors.iter().flat_map(|f| &f.channels).enumerate() {
+            writer.array(&factors_name(i), &lu.packed);
+            writer.array(&permutation_name(i), &lu.rows);
+        }
+        writer
+    }
+
+    fn read(reader: &mut Reader) -> Result<Self> {
+        let meta: Meta = reader.meta()?;
+        let reflectance = finite_rows::<3>(reader, "reflectance")?;
+        let elements = reflectance.len();
+        let emission = one_an_element(reader, "emission", elements)?;
+        let radiosity = one_an_element(reader, "radiosity", elements)?;
+        let factors = meta.factors.map(|factors| read_factors(reader, &factors, elements)).transpose()?;
+        let local = LocalEquilibrium { solver: meta.solver, radiosity, factors };
+        Ok(Self { optics: Optics { reflectance, emission }, local })
+    }
+}
+
+fn factors_name(channel: usize) -> String {
+    format!("factors {channel}")
+}
+
+fn permutation_name(channel: usize) -> String {
+    format!("permutation {channel}")
+}
+
+fn one_an_element(reader: &mut Reader, name: &str, elements: usize) -> Result<Vec<Rgb>> {
+    let rows = finite_rows::<3>(reader, name)?;
+    check(reader, rows.len() == elements, || format!("{} {name} of {elements} elements", rows.len()))?;
+    Ok(rows)
+}
+
+fn read_factors(reader: &mut Reader, meta: &FactorsMeta, elements: usize) -> Result<Factors> {
+    let FactorsMeta { channels: count, of_channel } = *meta;
+    check(reader, of_channel.iter().all(|&channel| (channel as usize) < count), || {
+        format!("channels {of_channel:?} of {count} factors")
+    })?;
+    let channels = (0..count).map(|channel| read_lu(reader, channel, elements)).collect::<Result<_>>()?;
+    Ok(Factors { channels, of_channel })
+}
+
+fn read_lu(reader: &mut Reader, channel: usize, size: usize) -> Result<Lu> {
+    let packed = finite_array(reader, &factors_name(channel))?;
+    let rows = array_of::<u32>(reader, &permutation_name(channel), size)?;
+    check(reader, packed.len() == size * size, || format!("{} factors of {size} elements", packed.len()))?;
+    check(reader, (0..size).all(|i| packed[i * (size + 1)] != 0.0), || "factors with a zero pivot".into())?;
+    check(reader, is_permutation(&rows), || "a permutation that names a row twice".into())?;
+    Ok(Lu { size: size as u32, packed, rows })
+}
+
+fn is_permutation(rows: &[u32]) -> bool {
+    let mut seen = vec![false; rows.len()];
+    rows.iter().all(|&row| seen.get_mut(row as usize).is_some_and(|seen| !std::mem::replace(seen, true)))
+}
