@@ -42,7 +42,7 @@ impl Reader {
         &self.index.manifest
     }
 
-    /// The metadata that [`Writer::new`] was given.
+    /// The metadata that [`Writer::new`](super::Writer::new) was given.
     pub fn meta<T: DeserializeOwned>(&self) -> Result<T> {
         let mut rest = &self.meta[..];
         let meta = rmp_serde::from_read(&mut rest)
