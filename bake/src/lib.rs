@@ -1,1 +1,18 @@
-//! bake
+//! glTF → elements → exact form factors and visibility → local equilibrium → cache.
+//!
+//! What comes in is a file; what goes out is a [`equilux_formats::BakedPart`] for each part in it. The form-factor code
+//! lives here because `assemble` couples parts with the same.
+
+pub mod bisect;
+pub mod cached;
+pub mod elements;
+pub mod equilibrium;
+pub mod form_factor;
+pub mod gltf_import;
+pub mod merge;
+pub mod monitor;
+pub mod oven;
+pub mod planes;
+pub mod prepare;
+pub mod visibility;
+pub mod world;

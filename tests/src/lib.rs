@@ -1,1 +1,3 @@
-//! tests
+//! What the tests and benchmarks share: shapes and scenes made by hand.
+
+pub mod shapes;

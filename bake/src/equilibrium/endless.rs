@@ -1,0 +1,60 @@
+//! Light that never ends: elements that see only each other, absorb nothing, and emit have no equilibrium.
+
+use equilux_formats::{Optics, Rows};
+
+/// Losses below this are rounding of the row sums, not light that gets away.
+const NO_LOSS: f64 = 1e-12;
+
+/// The first element of a group that exchanges light only among itself, reflects all of it in some channel and emits
+/// in that channel. `rows(i)` yields (sender, form factor) of element i over all elements.
+pub fn endless_light<'a, R>(optics: &Optics, rows: impl Fn(usize) -> R) -> Option<usize>
+where
+    R: Iterator<Item = (usize, f64)> + 'a,
+{
+    let n = optics.reflectance.len();
+    // Almost every scene absorbs something everywhere: then there is nothing to look for.
+    if optics.reflectance.iter().all(|rho| rho.iter().all(|&r| r < 1.0 - NO_LOSS)) {
+        return None;
+    }
+    let mut group: Vec<usize> = (0..n).collect();
+    let mut sums = vec![0.0; n];
+    for i in 0..n {
+        for (j, value) in rows(i) {
+            sums[i] += value;
+            unite(&mut group, i, j);
+        }
+    }
+    for channel in 0..3 {
+        let mut loses = vec![false; n];
+        let mut emitter = vec![None; n];
+        for i in 0..n {
+            let root = find(&mut group, i);
+            loses[root] |= 1.0 - optics.reflectance[i][channel] * sums[i] > NO_LOSS;
+            if optics.emission[i][channel] > 0.0 {
+                emitter[root] = emitter[root].or(Some(i));
+            }
+        }
+        if let Some(found) = (0..n).filter(|&root| !loses[root]).find_map(|root| emitter[root]) {
+            return Some(found);
+        }
+    }
+    None
+}
+
+/// The same for one block.
+pub fn endless_in_block(optics: &Optics, block: &Rows) -> Option<usize> {
+    endless_light(optics, |i| block.row(i))
+}
+
+fn find(group: &mut [usize], mut i: usize) -> usize {
+    while group[i] != i {
+        group[i] = group[group[i]];
+        i = group[i];
+    }
+    i
+}
+
+fn unite(group: &mut [usize], a: usize, b: usize) {
+    let (a, b) = (find(group, a), find(group, b));
+    group[a.max(b)] = a.min(b);
+}

@@ -1,0 +1,81 @@
+//! Progressive refinement: the element with the most unshot radiosity shoots first (Southwell relaxation). Cohen,
+//! Chen, Wallace & Greenberg 1988; Gortler & Cohen 1993 for the equivalence with Southwell.
+
+use super::{ROUNDING, added, largest, scaled, subtract};
+use equilux_formats::{Rgb, Rows};
+
+/// The block by columns: for each sender the receivers that see it.
+pub struct Columns {
+    starts: Vec<usize>,
+    entries: Vec<(u32, f64)>,
+}
+
+impl Columns {
+    /// The transpose of `block`.
+    pub fn of(block: &Rows) -> Self {
+        let n = block.receivers();
+        let mut starts = vec![0; block.senders() + 1];
+        (0..n).flat_map(|i| block.row(i)).for_each(|(j, _)| starts[j + 1] += 1);
+        for j in 0..block.senders() {
+            starts[j + 1] += starts[j];
+        }
+        let mut next = starts.clone();
+        let mut entries = vec![(0, 0.0); block.stored()];
+        for i in 0..n {
+            for (j, value) in block.row(i) {
+                entries[next[j]] = (i as u32, value);
+                next[j] += 1;
+            }
+        }
+        Self { starts, entries }
+    }
+
+    fn column(&self, sender: usize) -> &[(u32, f64)] {
+        &self.entries[self.starts[sender]..self.starts[sender + 1]]
+    }
+}
+
+/// Shoot until what is unshot is rounding.
+pub fn solve(
+    block: &Rows,
+    columns: &Columns,
+    reflectance: &[Rgb],
+    sources: &[Rgb],
+    guess: &[Rgb],
+) -> Vec<Rgb> {
+    let mut b = guess.to_vec();
+    // Updates gather rounding over many shots: the residual is taken afresh until it is small at the start.
+    loop {
+        let mut unshot: Vec<Rgb> = (0..b.len())
+            .map(|i| subtract(added(sources[i], scaled(reflectance[i], block.gather(i, &b))), b[i]))
+            .collect();
+        let shots = shoot(columns, reflectance, &mut b, &mut unshot);
+        if shots == 0 {
+            return b;
+        }
+    }
+}
+
+/// Shoot until no channel has more than rounding left; returns the number of shots.
+fn shoot(columns: &Columns, reflectance: &[Rgb], b: &mut [Rgb], unshot: &mut [Rgb]) -> usize {
+    let start = largest(b);
+    let scale: Rgb = std::array::from_fn(|c| start[c].max(largest(unshot)[c]).max(f64::MIN_POSITIVE));
+    let share = |r: &Rgb| (0..3).map(|c| r[c].abs() / scale[c]).fold(0.0, f64::max);
+    for shots in 0.. {
+        let (brightest, most) = unshot
+            .iter()
+            .map(share)
+            .enumerate()
+            .fold((0, 0.0), |best, (i, s)| if s > best.1 { (i, s) } else { best });
+        if most <= 4.0 * ROUNDING {
+            return shots;
+        }
+        let shot = std::mem::take(&mut unshot[brightest]);
+        b[brightest] = added(b[brightest], shot);
+        for &(receiver, value) in columns.column(brightest) {
+            let i = receiver as usize;
+            unshot[i] = added(unshot[i], scaled(reflectance[i], shot.map(|s| s * value)));
+        }
+    }
+    unreachable!("the loop above ends only by returning")
+}

@@ -1,0 +1,80 @@
+//! F_ij = (1/π) ∫_{S_j} V(x_i,y) cosθ_i cosθ_j / |x_i−y|² dy, written as the equation reads.
+//!
+//! Every occluder hides a pyramid from the receiver's point x_i; what is left of the sender polygon after all pyramids
+//! are taken away is integrated exactly. No acceleration, nothing shared between pairs: this is the oracle that every
+//! faster way is tested against.
+
+use super::contour;
+use super::polygon::{Polygon, Pyramid, Side, clip};
+use crate::world::World;
+use equilux_formats::{Element, Face};
+use glam::DVec3;
+
+/// How close to a plane, relative to the distance, a point counts as lying in it. A point in a sender's plane sees
+/// nothing of it and an occluder seen edge-on hides nothing; without this, rounding would make either of them a
+/// sliver. A few thousand times the rounding of f64, a millionth of that of f32.
+pub const IN_PLANE: f64 = 1e-12;
+
+/// The form factor from element `receiver` to element `sender` of `world`, with everything else in the way; without
+/// unit, 0..1. Faces in the plane of either end hide nothing of it.
+pub fn form_factor(world: &World, receiver: usize, sender: usize) -> f64 {
+    let (receiver, sender) = (&world.elements[receiver], &world.elements[sender]);
+    let ends = [receiver, sender].map(|element| world.planes[element.face.index()]);
+    if ends[0] == ends[1] {
+        return 0.0;
+    }
+    let Some(polygon) = visible_side(receiver, sender) else { return 0.0 };
+    let mut pieces = vec![polygon];
+    for (occluder, plane) in world.faces.iter().zip(&world.planes) {
+        if ends.contains(plane) {
+            continue;
+        }
+        let Some(pyramid) = hidden_pyramid(receiver.centroid, occluder, sender) else { continue };
+        let mut outside = Vec::with_capacity(pieces.len());
+        for piece in pieces {
+            pyramid.subtract_from(piece, &mut outside);
+        }
+        pieces = outside;
+    }
+    pieces.iter().map(|piece| contour::form_factor(piece, receiver.normal)).sum()
+}
+
+/// The sender's polygon relative to the receiver's point, cut off at the receiver's horizon; none if the sender turns
+/// its back, or one lies in the other's plane.
+pub fn visible_side(receiver: &Element, sender: &Element) -> Option<Polygon> {
+    let x = receiver.centroid;
+    let polygon: Polygon = sender.corners.as_slice().iter().map(|&p| p - x).collect();
+    let reach = polygon.iter().map(|p| p.length()).fold(0.0, f64::max);
+    if -sender.normal.dot(polygon[0]) <= IN_PLANE * reach {
+        return None;
+    }
+    if polygon.iter().all(|&p| receiver.normal.dot(p) <= IN_PLANE * reach) {
+        return None;
+    }
+    match clip(&polygon, |p| receiver.normal.dot(p)) {
+        Side::All => Some(polygon),
+        Side::None => None,
+        Side::Piece(piece) => Some(piece),
+    }
+}
+
+/// The pyramid that `occluder` hides of `sender` from the point `x`; none if it lies behind the sender or is seen
+/// edge-on.
+pub fn hidden_pyramid(x: DVec3, occluder: &Face, sender: &Element) -> Option<Pyramid> {
+    let polygon: Polygon = occluder.corners.iter().map(|&p| p - x).collect();
+    let reach = polygon.iter().map(|p| p.length()).fold(0.0, f64::max);
+    if occluder.normal.dot(polygon[0]).abs() <= IN_PLANE * reach {
+        return None;
+    }
+    // Only what stands between x and the sender's plane hides anything of the sender.
+    let on_plane = sender.corners.as_slice()[0] - x;
+    let before_sender = |p: DVec3| sender.normal.dot(p - on_plane);
+    if polygon.iter().all(|&p| before_sender(p) <= IN_PLANE * reach) {
+        return None;
+    }
+    match clip(&polygon, before_sender) {
+        Side::All => Some(Pyramid::over(&polygon, occluder.normal)),
+        Side::None => None,
+        Side::Piece(piece) => Some(Pyramid::over(&piece, occluder.normal)),
+    }
+}

@@ -1,0 +1,145 @@
+//! Prepared part → [`BakedPart`]: its own block of form factors and its local equilibrium, from the cache if there.
+
+use crate::cached::{Origin, cached};
+use crate::equilibrium::endless::endless_in_block;
+use crate::equilibrium::{LocalSystem, factorise};
+use crate::form_factor::block::block;
+use crate::monitor::Monitor;
+use crate::prepare::PreparedPart;
+use crate::world::World;
+use equilux_formats::{
+    BakedGeometry, BakedLight, BakedPart, Content, Digest, Error, Geometry, Key, LocalEquilibrium,
+    LocalSolver, Manifest, Optics, Result, Rgb, Rows, Store,
+};
+use glam::DAffine3;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
+pub const KERNEL_VERSION: u32 = 1;
+
+/// A baked part and how it came about.
+pub struct Baked {
+    /// The part.
+    pub part: BakedPart,
+    /// Key of its geometry and form factors.
+    pub key: Key,
+    /// Where its form factors came from.
+    pub form_factors: Origin,
+    /// Where its local equilibrium came from.
+    pub light: Origin,
+    /// Time spent on form factors, summed over threads.
+    pub form_factor_time: Duration,
+    /// Time spent on the local equilibrium.
+    pub light_time: Duration,
+}
+
+/// What surrounds the baking of a part.
+pub struct Oven<'a> {
+    /// The cache.
+    pub store: &'a Store,
+    /// The file that the parts come from, for messages and for remembering what was baked last.
+    pub file: &'a Path,
+    /// Progress and the wish to stop.
+    pub monitor: &'a Monitor,
+}
+
+impl Oven<'_> {
+    /// Bake one part, or take from the cache what is there. None if the monitor was stopped.
+    pub fn bake(&self, part: &PreparedPart) -> Result<Option<Baked>> {
+        let manifest = geometry_manifest(part);
+        let key = manifest.key();
+        let mut form_factor_time = Duration::ZERO;
+        let name = |what: &str| format!("{what} of {} in {}", part.name, self.file.display());
+        let found = cached(self.store, &name("form factors"), &manifest, || {
+            self.monitor.begin(format!("form factors of {}", part.name), part.geometry.elements.len());
+            let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
+            let all = 0..world.elements.len();
+            Ok(block(&world, all.clone(), std::slice::from_ref(&all), all.clone(), self.monitor).map(
+                |timed| {
+                    form_factor_time = timed.time;
+                    BakedGeometry { geometry: part.geometry.clone(), self_block: timed.block }
+                },
+            ))
+        })?;
+        let Some((geometry, form_factors)) = found else { return Ok(None) };
+        let start = Instant::now();
+        let manifest = light_manifest(key.clone().into(), &part.optics, part.solver);
+        let (light, light_origin) = cached(self.store, &name("light"), &manifest, || {
+            self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
+            self.refuse_endless_light(part, &geometry.self_block)?;
+            Ok(Some(BakedLight {
+                local: local_equilibrium(&geometry.self_block, &part.optics, part.solver),
+                optics: part.optics.clone(),
+            }))
+        })?
+        .expect("a local equilibrium is not stopped halfway");
+        let part = BakedPart {
+            name: part.name.clone(),
+            geometry: geometry.geometry,
+            optics: light.optics,
+            materials: part.materials.clone(),
+            self_block: geometry.self_block,
+            local: light.local,
+        };
+        let light_time = start.elapsed();
+        Ok(Some(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time }))
+    }
+
+    fn refuse_endless_light(&self, part: &PreparedPart, block: &Rows) -> Result<()> {
+        let Some(element) = endless_in_block(&part.optics, block) else { return Ok(()) };
+        Err(Error::new(
+            self.file,
+            format!(
+                "part `{}` is closed, reflects everything and emits (material `{}`): its light grows without end",
+                part.name,
+                part.materials[part.geometry.elements[element].material.index()].name
+            ),
+            "a reflectance below 1 or an opening somewhere",
+            "lower a base colour below 1, or switch the emission off",
+        ))
+    }
+}
+
+/// The part's light with nothing arriving from outside, and what its solver wants kept.
+pub fn local_equilibrium(block: &Rows, optics: &Optics, solver: LocalSolver) -> LocalEquilibrium {
+    let factors = factorise(block, &optics.reflectance, solver);
+    let system = LocalSystem::new(block, &optics.reflectance, solver, factors.as_ref());
+    let radiosity = system.solve(&optics.emission, &optics.emission);
+    LocalEquilibrium { solver, radiosity, factors }
+}
+
+/// Everything that the part's own form factors depend on, and nothing else.
+fn geometry_manifest(part: &PreparedPart) -> Manifest {
+    Manifest::new()
+        .setting("kernel", KERNEL_VERSION)
+        .setting("element size", part.element_size)
+        .digest("geometry", geometry_digest(&part.geometry))
+}
+
+/// Everything that the part's own light depends on.
+pub fn light_manifest(form_factors: Digest, optics: &Optics, solver: LocalSolver) -> Manifest {
+    Manifest::new()
+        .digest("form factors", form_factors)
+        .digest("reflectance", rgb_digest(&optics.reflectance))
+        .digest("emission", rgb_digest(&optics.emission))
+        .setting("local solver", format!("{solver:?}"))
+}
+
+fn geometry_digest(geometry: &Geometry) -> Digest {
+    let mut content = Content::new();
+    for element in &geometry.elements {
+        let corners = element.corners.as_slice().iter().flat_map(|p| p.to_array());
+        content = content
+            .f64s(&corners.collect::<Vec<_>>())
+            .bytes([element.material.0.to_le_bytes(), element.face.0.to_le_bytes()].concat());
+    }
+    for face in &geometry.faces {
+        content = content.f64s(&face.corners.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>());
+    }
+    content.digest()
+}
+
+fn rgb_digest(values: &[Rgb]) -> Digest {
+    Content::new().f64s(values.as_flattened()).digest()
+}

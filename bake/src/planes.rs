@@ -1,0 +1,72 @@
+//! Which faces lie in one plane. Such faces neither light nor hide one another, whatever rounding says.
+
+use equilux_formats::Face;
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// Normals are sorted into cubes of this side; neighbours are searched too.
+const CELL: f64 = 1.0 / 64.0;
+
+/// How far, relative to the largest coordinate, a corner may lie off its plane: two units in the last place of the
+/// f32 numbers that glTF stores.
+pub const FLATNESS: f64 = 2.0 * f32::EPSILON as f64;
+
+/// A plane number for every face; faces get the same number if all corners of the one lie within the flatness
+/// tolerance of the plane of the other, on either side. Larger faces set the planes: theirs are known best.
+pub fn group(faces: &[Face]) -> Vec<u32> {
+    let tolerance = FLATNESS * largest_coordinate(faces);
+    let mut order: Vec<usize> = (0..faces.len()).collect();
+    let sizes: Vec<f64> = faces.iter().map(size).collect();
+    order.sort_by(|&a, &b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(&b)));
+
+    let mut planes: Vec<&Face> = Vec::new();
+    let mut cells: HashMap<[i32; 3], Vec<u32>> = HashMap::new();
+    let mut of_face = vec![0; faces.len()];
+    for index in order {
+        let face = &faces[index];
+        let axis = axis(face.normal);
+        let known = neighbours(axis)
+            .filter_map(|cell| cells.get(&cell))
+            .flatten()
+            .copied()
+            .find(|&plane| lies_in(face, planes[plane as usize], tolerance));
+        of_face[index] = known.unwrap_or_else(|| {
+            planes.push(face);
+            let plane = planes.len() as u32 - 1;
+            cells.entry(cell(axis)).or_default().push(plane);
+            plane
+        });
+    }
+    of_face
+}
+
+fn largest_coordinate(faces: &[Face]) -> f64 {
+    faces.iter().flat_map(|f| &f.corners).map(|p| p.abs().max_element()).fold(0.0, f64::max)
+}
+
+fn size(face: &Face) -> f64 {
+    face.corners.iter().map(|&p| (p - face.corners[0]).length_squared()).fold(0.0, f64::max)
+}
+
+fn lies_in(face: &Face, plane: &Face, tolerance: f64) -> bool {
+    face.corners.iter().all(|&p| plane.normal.dot(p - plane.corners[0]).abs() <= tolerance)
+}
+
+/// The normal with its sign taken away: opposite faces share a plane.
+fn axis(normal: DVec3) -> DVec3 {
+    let largest = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
+    if normal[largest] < 0.0 { -normal } else { normal }
+}
+
+fn cell(axis: DVec3) -> [i32; 3] {
+    (axis / CELL).floor().as_ivec3().to_array()
+}
+
+/// The cells around an axis and around its opposite: where the two largest components tie, rounding decides which of
+/// them sets the sign.
+fn neighbours(axis: DVec3) -> impl Iterator<Item = [i32; 3]> {
+    [axis, -axis].into_iter().flat_map(|axis| {
+        let [x, y, z] = cell(axis);
+        (0..27).map(move |k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1])
+    })
+}

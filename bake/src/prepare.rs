@@ -1,0 +1,180 @@
+//! Scene → parts ready to bake: elements of the chosen size, or cells that planes cut out of the whole scene.
+
+use crate::bisect::{Cut, bisect, cut_all};
+use crate::elements::{ElementSize, area, default_size, optics, subdivide};
+use crate::equilibrium::default_solver;
+use crate::world::World;
+use equilux_formats::{
+    Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, PartId,
+    Result, Scene,
+};
+use glam::{DAffine3, DVec3};
+
+/// What a person chooses about elements and parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Preparation {
+    /// Element size; none to let the scene decide. A part's own `element_size` comes first.
+    pub element_size: Option<ElementSize>,
+    /// What is a part.
+    pub division: Division,
+    /// Local solver; none to let the part's size decide. A part's own `local_solver` comes first.
+    pub local_solver: Option<LocalSolver>,
+}
+
+/// What is a part.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Division {
+    /// The scene's root nodes.
+    Authored,
+    /// This many cells, each time the largest cut at the median of its longest axis.
+    Bisect(usize),
+    /// The cells between these planes.
+    Cuts(Vec<Cut>),
+}
+
+/// A scene whose parts have elements.
+pub struct Prepared {
+    /// The distinct parts.
+    pub parts: Vec<PreparedPart>,
+    /// The parts placed.
+    pub instances: Vec<Instance>,
+    /// The element size in force where a part asks for none of its own.
+    pub element_size: ElementSize,
+}
+
+/// A part that is ready to bake.
+pub struct PreparedPart {
+    /// Its name.
+    pub name: String,
+    /// Elements and faces.
+    pub geometry: Geometry,
+    /// Reflectance and emission of the elements.
+    pub optics: Optics,
+    /// The materials that elements name.
+    pub materials: Vec<Material>,
+    /// How large its elements may be.
+    pub element_size: ElementSize,
+    /// Who solves its equilibrium.
+    pub solver: LocalSolver,
+}
+
+/// The most elements a part may have: ids are 32 bits, and a matrix of this many rows no machine holds.
+const MOST_ELEMENTS: f64 = 4e6;
+
+/// Give every part its elements. Fails where the element size asks for more of them than can be.
+pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
+    let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene));
+    let mut parts = Vec::new();
+    for part in &scene.parts {
+        let size = part.element_size.map_or(element_size, ElementSize::Metres);
+        refuse_too_many(scene, area(part), size)?;
+        let geometry = subdivide(part, size);
+        let solver = part.local_solver.or(wanted.local_solver);
+        parts.push(PreparedPart {
+            name: part.name.clone(),
+            optics: optics(&geometry, &part.materials),
+            solver: solver.unwrap_or_else(|| default_solver(geometry.elements.len())),
+            materials: part.materials.clone(),
+            element_size: size,
+            geometry,
+        });
+    }
+    let authored = Prepared { parts, instances: scene.instances.clone(), element_size };
+    Ok(match &wanted.division {
+        Division::Authored => authored,
+        Division::Bisect(count) => divided(&authored, wanted, |whole| bisect(whole, *count)),
+        Division::Cuts(planes) => divided(&authored, wanted, |whole| cut_all(whole, planes)),
+    })
+}
+
+fn suitable_size(scene: &Scene) -> ElementSize {
+    let scale = |instance: &Instance| instance.placement.matrix3.determinant().abs().cbrt();
+    default_size(scene.instances.iter().map(|i| area(&scene.parts[i.part.index()]) * scale(i).powi(2)).sum())
+}
+
+fn refuse_too_many(scene: &Scene, area: f64, size: ElementSize) -> Result<()> {
+    let ElementSize::Metres(size) = size else { return Ok(()) };
+    let count = area / (size * size);
+    if count <= MOST_ELEMENTS {
+        return Ok(());
+    }
+    Err(Error::new(
+        &scene.file,
+        format!("elements of {size} m on {area:.3e} m² of surface are {count:.1e}"),
+        format!("at most {MOST_ELEMENTS:.0e} elements a part"),
+        "choose larger elements with --element-size METRES",
+    ))
+}
+
+/// The whole scene as one geometry, cut into cells; each cell is a part that stands once.
+fn divided(
+    authored: &Prepared,
+    wanted: &Preparation,
+    divide: impl FnOnce(Geometry) -> Vec<Geometry>,
+) -> Prepared {
+    let (whole, materials) = merged(authored);
+    let (mut parts, mut instances) = (Vec::new(), Vec::new());
+    for (number, cell) in divide(whole).into_iter().enumerate() {
+        let name = format!("cell {}", number + 1);
+        let (geometry, origin) = recentred(cell);
+        instances.push(Instance {
+            name: name.clone(),
+            part: PartId::from_index(number),
+            placement: DAffine3::from_translation(origin),
+            emission_scale: 1.0,
+        });
+        let solver = wanted.local_solver.unwrap_or_else(|| default_solver(geometry.elements.len()));
+        parts.push(PreparedPart {
+            name,
+            optics: optics(&geometry, &materials),
+            geometry,
+            materials: materials.clone(),
+            element_size: authored.element_size,
+            solver,
+        });
+    }
+    Prepared { parts, instances, element_size: authored.element_size }
+}
+
+/// All instances in scene coordinates, with one list of materials, emission scaled as each instance has it.
+fn merged(prepared: &Prepared) -> (Geometry, Vec<Material>) {
+    let part = |instance: &Instance| &prepared.parts[instance.part.index()];
+    let world = World::new(prepared.instances.iter().map(|i| (&part(i).geometry, i.placement)));
+    let mut materials: Vec<Material> = Vec::new();
+    let mut elements = Vec::new();
+    for (number, instance) in prepared.instances.iter().enumerate() {
+        let own: Vec<MaterialId> = part(instance)
+            .materials
+            .iter()
+            .map(|material| {
+                let mut material = material.clone();
+                material.emission = material.emission.map(|e| e * instance.emission_scale);
+                number_of(&mut materials, material)
+            })
+            .collect();
+        let placed = world.elements[world.elements_of(number)].iter();
+        elements.extend(placed.map(|e| Element { material: own[e.material.index()], ..*e }));
+    }
+    (Geometry { elements, faces: world.faces }, materials)
+}
+
+fn number_of(materials: &mut Vec<Material>, material: Material) -> MaterialId {
+    let known = materials.iter().position(|m| *m == material);
+    MaterialId::from_index(known.unwrap_or_else(|| {
+        materials.push(material);
+        materials.len() - 1
+    }))
+}
+
+/// The geometry moved so that its lowest corner is the origin, and where that corner was.
+fn recentred(geometry: Geometry) -> (Geometry, DVec3) {
+    let corners = geometry.elements.iter().flat_map(|e| e.corners.as_slice());
+    let origin = corners.fold(DVec3::INFINITY, |low, &p| low.min(p));
+    let element = |e: &Element| Element::new(e.corners.map(|p| p - origin), e.material, FaceId(e.face.0));
+    let face = |f: &Face| Face::new(f.corners.iter().map(|&p| p - origin).collect());
+    let moved = Geometry {
+        elements: geometry.elements.iter().map(element).collect(),
+        faces: geometry.faces.iter().map(face).collect(),
+    };
+    (moved, origin)
+}

@@ -1,0 +1,4 @@
+//! Truths of light that every way of computing must keep.
+
+mod closed;
+mod from_a_point;

@@ -1,0 +1,111 @@
+//! Parts made of quads and boxes.
+
+use equilux_bake::elements::{ElementSize, subdivide};
+use equilux_bake::world::World;
+use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Surface};
+use glam::{DAffine3, DVec3, dvec3};
+
+/// A grey material: reflectance and emission the same in all channels.
+pub fn grey(reflectance: f64, emission: f64) -> Material {
+    Material {
+        name: String::new(),
+        reflectance: [reflectance; 3],
+        emission: [emission; 3],
+        double_sided: false,
+    }
+}
+
+/// A part without surfaces, of one material.
+pub fn part(material: Material) -> Part {
+    Part {
+        name: "part".into(),
+        surfaces: vec![],
+        materials: vec![material],
+        element_size: None,
+        local_solver: None,
+    }
+}
+
+/// Put parts as they stand into one.
+pub fn joined(parts: impl IntoIterator<Item = Part>) -> Part {
+    let mut all = Part { materials: vec![], ..part(grey(0.0, 0.0)) };
+    for part in parts {
+        let first = all.materials.len() as u32;
+        all.materials.extend(part.materials);
+        all.surfaces.extend(
+            part.surfaces.iter().map(|s| Surface { material: MaterialId(s.material.0 + first), ..*s }),
+        );
+    }
+    all
+}
+
+/// Add a quad to the part's first material, counter-clockwise from the front.
+pub fn quad(mut part: Part, corners: [DVec3; 4]) -> Part {
+    part.surfaces.push(Surface { corners: Corners::quad(corners), material: MaterialId(0) });
+    part
+}
+
+/// Add a triangle to the part's first material, counter-clockwise from the front.
+pub fn triangle(mut part: Part, corners: [DVec3; 3]) -> Part {
+    part.surfaces.push(Surface { corners: Corners::triangle(corners), material: MaterialId(0) });
+    part
+}
+
+/// The rectangle spanned by `u` and `v` from `origin`; its front looks along u × v.
+pub fn rectangle(part: Part, origin: DVec3, u: DVec3, v: DVec3) -> Part {
+    quad(part, [origin, origin + u, origin + u + v, origin + v])
+}
+
+/// A box that one looks at from outside.
+pub fn solid(material: Material, low: DVec3, high: DVec3) -> Part {
+    box_part(material, low, high, false)
+}
+
+/// A box that one stands in.
+pub fn room(material: Material, low: DVec3, high: DVec3) -> Part {
+    box_part(material, low, high, true)
+}
+
+fn box_part(material: Material, low: DVec3, high: DVec3, inwards: bool) -> Part {
+    let corner = |x: usize, y: usize, z: usize| dvec3([low, high][x].x, [low, high][y].y, [low, high][z].z);
+    let sides = [
+        [corner(0, 0, 0), corner(0, 0, 1), corner(0, 1, 1), corner(0, 1, 0)],
+        [corner(1, 0, 0), corner(1, 1, 0), corner(1, 1, 1), corner(1, 0, 1)],
+        [corner(0, 0, 0), corner(1, 0, 0), corner(1, 0, 1), corner(0, 0, 1)],
+        [corner(0, 1, 0), corner(0, 1, 1), corner(1, 1, 1), corner(1, 1, 0)],
+        [corner(0, 0, 0), corner(0, 1, 0), corner(1, 1, 0), corner(1, 0, 0)],
+        [corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)],
+    ];
+    sides.into_iter().fold(part(material), |part, mut side| {
+        if inwards {
+            side.reverse();
+        }
+        quad(part, side)
+    })
+}
+
+/// The part moved by `placement`; mirrored surfaces keep their front.
+pub fn moved(mut part: Part, placement: DAffine3) -> Part {
+    for surface in &mut part.surfaces {
+        surface.corners = surface.corners.map(|p| placement.transform_point3(p));
+        if placement.matrix3.determinant() < 0.0 {
+            surface.corners = surface.corners.flipped();
+        }
+    }
+    part
+}
+
+/// The part's geometry, as its own mesh has it.
+pub fn mesh(part: &Part) -> Geometry {
+    subdivide(part, ElementSize::Mesh)
+}
+
+/// The part's geometry in elements of at most `size` metres.
+pub fn fine(part: &Part, size: f64) -> Geometry {
+    subdivide(part, ElementSize::Metres(size))
+}
+
+/// A world of that geometry alone.
+pub fn alone(geometry: &Geometry) -> World {
+    World::new([(geometry, DAffine3::IDENTITY)])
+}

@@ -1,0 +1,3 @@
+//! All tests in one binary: physics first, then contracts.
+
+mod physics;
