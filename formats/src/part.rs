@@ -21,7 +21,7 @@ pub struct Part {
     pub local_solver: Option<LocalSolver>,
 }
 
-/// A triangle or parallelogram of the source mesh.
+/// A triangle or flat convex quad of the source mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Surface {
     /// Corners, counter-clockwise seen from the front.

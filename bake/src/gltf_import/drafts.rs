@@ -1,0 +1,145 @@
+//! A part before it is settled: the surfaces of all nodes below some root, moved into one system of coordinates.
+
+use super::document::Document;
+use super::extras::Extras;
+use super::lights::moved;
+use super::materials::same_material;
+use super::meshes::Mesh;
+use super::notes::Notes;
+use super::surfaces::Dropped;
+use equilux_formats::{Corners, LocalSolver, Material, MaterialId, PunctualLight, Result, Surface};
+use glam::DAffine3;
+
+/// No part has more surfaces: a few kilobytes of nodes that share a mesh could ask for any number.
+const MOST_SURFACES: usize = 1 << 24;
+
+/// What an author may ask for a part as a whole.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Settings {
+    /// Size of elements, metres.
+    pub(super) element_size: Option<f64>,
+    /// How the local equilibrium is found.
+    pub(super) local_solver: Option<LocalSolver>,
+}
+
+impl Settings {
+    /// What `extras` ask for.
+    pub(super) fn of(extras: &Extras) -> Self {
+        Self { element_size: extras.element_size, local_solver: extras.local_solver }
+    }
+
+    /// These settings and, where they are silent, `other`'s.
+    pub(super) fn or(self, other: Self) -> Self {
+        Self {
+            element_size: self.element_size.or(other.element_size),
+            local_solver: self.local_solver.or(other.local_solver),
+        }
+    }
+
+    /// Takes up what the node called `name` asks for. The first node that asks decides for the part.
+    pub(super) fn hear(&mut self, asked: Self, name: &str, notes: &mut Notes) {
+        let together = self.or(asked);
+        if asked.or(together) != together {
+            notes.add(name, "its element_size or local_solver differs from the part's, which holds");
+        }
+        *self = together;
+    }
+}
+
+/// Surfaces, materials and lights in the coordinates of a root node or of a file.
+#[derive(Default)]
+pub(super) struct Draft {
+    pub(super) surfaces: Vec<Surface>,
+    pub(super) materials: Materials,
+    pub(super) lights: Vec<PunctualLight>,
+    pub(super) settings: Settings,
+    pub(super) dropped: Dropped,
+}
+
+impl Draft {
+    /// Adds `mesh`, placed by `placement`, its emission scaled.
+    pub(super) fn add_mesh(
+        &mut self,
+        document: &Document,
+        mesh: &Mesh,
+        placement: DAffine3,
+        emission_scale: f64,
+    ) -> Result<()> {
+        for (surfaces, material) in &mesh.primitives {
+            let material = self.materials.id(scaled(material, emission_scale));
+            self.add(
+                document,
+                surfaces.iter().map(|corners| Surface { corners: *corners, material }),
+                placement,
+            )?;
+        }
+        self.dropped += mesh.dropped;
+        Ok(())
+    }
+
+    /// Adds all of `other`, placed by `placement`, its emission scaled.
+    pub(super) fn add_draft(
+        &mut self,
+        document: &Document,
+        other: &Draft,
+        placement: DAffine3,
+        emission_scale: f64,
+    ) -> Result<()> {
+        let materials: Vec<MaterialId> = other
+            .materials
+            .0
+            .iter()
+            .map(|material| self.materials.id(scaled(material, emission_scale)))
+            .collect();
+        let surfaces = other.surfaces.iter();
+        let surfaces =
+            surfaces.map(|s| Surface { corners: s.corners, material: materials[s.material.index()] });
+        self.add(document, surfaces, placement)?;
+        self.lights.extend(other.lights.iter().map(|light| moved(light, placement, emission_scale)));
+        self.dropped += other.dropped;
+        Ok(())
+    }
+
+    fn add(
+        &mut self,
+        document: &Document,
+        surfaces: impl ExactSizeIterator<Item = Surface>,
+        placement: DAffine3,
+    ) -> Result<()> {
+        if self.surfaces.len() + surfaces.len() > MOST_SURFACES {
+            return Err(document.error(
+                format!("a part of more than {MOST_SURFACES} surfaces"),
+                "fewer",
+                "divide it into several root nodes, or simplify its meshes",
+            ));
+        }
+        let placed = surfaces.map(|s| Surface { corners: transformed(&s.corners, placement), ..s });
+        self.surfaces.extend(placed);
+        Ok(())
+    }
+}
+
+/// `corners` after `placement`. A mirror turns the order round, so that corners stay counter-clockwise from the front.
+pub(super) fn transformed(corners: &Corners, placement: DAffine3) -> Corners {
+    let corners = corners.map(|corner| placement.transform_point3(corner));
+    if placement.matrix3.determinant() < 0.0 { corners.flipped() } else { corners }
+}
+
+fn scaled(material: &Material, emission_scale: f64) -> Material {
+    Material { emission: material.emission.map(|e| e * emission_scale), ..material.clone() }
+}
+
+/// Materials, each content once.
+#[derive(Default)]
+pub(super) struct Materials(pub(super) Vec<Material>);
+
+impl Materials {
+    /// The id of the material that does with light what `material` does.
+    pub(super) fn id(&mut self, material: Material) -> MaterialId {
+        let known = self.0.iter().position(|known| same_material(known, &material));
+        MaterialId::from_index(known.unwrap_or_else(|| {
+            self.0.push(material);
+            self.0.len() - 1
+        }))
+    }
+}

@@ -1,0 +1,71 @@
+//! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `local_solver`. Other keys are
+//! somebody else's and are left alone.
+
+use super::document::Document;
+use super::nodes::label;
+use equilux_formats::{LocalSolver, Result};
+use serde_json::Value;
+
+/// The keys that mean something here.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Extras {
+    /// A file whose contents stand at this node, relative to the node's file.
+    pub(super) part: Option<String>,
+    /// Size of the part's elements, metres.
+    pub(super) element_size: Option<f64>,
+    /// Factor on the emission of everything below the node.
+    pub(super) emission_scale: Option<f64>,
+    /// How the part's local equilibrium is found.
+    pub(super) local_solver: Option<LocalSolver>,
+}
+
+impl Extras {
+    /// Reads the extras of `node`. Errors name node, key and value.
+    pub(super) fn of(document: &Document, node: &gltf::Node) -> Result<Self> {
+        let values = node.extras().as_ref().and_then(|raw| serde_json::from_str(raw.get()).ok());
+        let Some(Value::Object(values)) = values else { return Ok(Self::default()) };
+        let key = Keys { document, node, values: &values };
+        Ok(Self {
+            part: key.get("part", "the path of a glTF file", path)?,
+            element_size: key.get("element_size", "a number above 0, metres", |value| {
+                value.as_f64().filter(|&size| size.is_finite() && size > 0.0)
+            })?,
+            emission_scale: key.get("emission_scale", "a number, 0 or more", |value| {
+                value.as_f64().filter(|&scale| scale.is_finite() && scale >= 0.0)
+            })?,
+            local_solver: key.get(
+                "local_solver",
+                "\"direct\", \"gauss-seidel\", \"progressive\" or \"iterative\"",
+                |value| serde_json::from_value(value.clone()).ok(),
+            )?,
+        })
+    }
+
+    /// Whether any of the keys is there.
+    pub(super) fn any(&self) -> bool {
+        *self != Self::default()
+    }
+}
+
+fn path(value: &Value) -> Option<String> {
+    value.as_str().filter(|path| !path.is_empty()).map(str::to_owned)
+}
+
+struct Keys<'a> {
+    document: &'a Document,
+    node: &'a gltf::Node<'a>,
+    values: &'a serde_json::Map<String, Value>,
+}
+
+impl Keys<'_> {
+    fn get<T>(&self, key: &str, expected: &str, read: impl Fn(&Value) -> Option<T>) -> Result<Option<T>> {
+        let Some(value) = self.values.get(key) else { return Ok(None) };
+        read(value).map(Some).ok_or_else(|| {
+            self.document.error(
+                format!("node {} with {key} = {value} in its extras", label(self.node)),
+                expected,
+                format!("correct the custom property {key}"),
+            )
+        })
+    }
+}

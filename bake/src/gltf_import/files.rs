@@ -1,0 +1,104 @@
+//! The only place where the importer touches the disk. In go references found in files, out come bytes, the list of
+//! files that were read, and the promise that none of them lies outside the scene's folder.
+
+use equilux_formats::{Error, Result};
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// The scene's folder and what was read in it.
+pub(super) struct Files {
+    /// The folder as the caller named it, so that errors and sources show paths the caller knows.
+    folder: PathBuf,
+    /// The same folder, free of links.
+    root: PathBuf,
+    /// Files that were read, the scene first.
+    pub(super) sources: Vec<PathBuf>,
+}
+
+impl Files {
+    /// The files around `scene`.
+    pub(super) fn around(scene: &Path) -> Result<Self> {
+        let folder = scene.parent().unwrap_or(Path::new("")).to_path_buf();
+        let root = if folder.as_os_str().is_empty() { Path::new(".") } else { &folder }
+            .canonicalize()
+            .map_err(|error| unreadable(scene, &error))?;
+        Ok(Self { folder, root, sources: Vec::new() })
+    }
+
+    /// Reads all of `path`, which is the scene or came from [`Files::resolve`].
+    pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>> {
+        let metadata = fs::metadata(path).map_err(|error| unreadable(path, &error))?;
+        if !metadata.is_file() {
+            return Err(Error::new(path, "not a regular file", "a file that can be read", "name a file"));
+        }
+        let bytes = fs::read(path).map_err(|error| unreadable(path, &error))?;
+        if !self.sources.iter().any(|source| source == path) {
+            self.sources.push(path.to_path_buf());
+        }
+        Ok(bytes)
+    }
+
+    /// The file that `reference` means in the file `from`; one file has one path, however it is referred to.
+    pub(super) fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf> {
+        let refused = |why: &str| {
+            Error::new(
+                from,
+                format!("the reference '{reference}', which {why}"),
+                "a relative path to a file in the scene's folder",
+                "move that file beside the scene and refer to it by a relative path",
+            )
+        };
+        if has_scheme(reference) {
+            return Err(refused("is a URL or an absolute path"));
+        }
+        let beside = from.strip_prefix(&self.folder).unwrap_or(from).parent().unwrap_or(Path::new(""));
+        let relative = beside.join(reference);
+        match leaves(&relative) {
+            Some(Component::ParentDir) => return Err(refused("leaves the scene's folder")),
+            Some(_) => return Err(refused("is an absolute path")),
+            None => {}
+        }
+        let target = self.root.join(&relative).canonicalize().map_err(|error| {
+            Error::new(
+                from,
+                format!("the reference '{reference}', but {} cannot be read ({error})", relative.display()),
+                "an existing file",
+                "put the file there or correct the reference",
+            )
+        })?;
+        let inside =
+            target.strip_prefix(&self.root).map_err(|_| refused("leaves the scene's folder by a link"))?;
+        Ok(self.folder.join(inside))
+    }
+}
+
+/// Whether `reference` starts as a URL does; a drive letter looks the same.
+fn has_scheme(reference: &str) -> bool {
+    reference.split_once(':').is_some_and(|(scheme, _)| {
+        scheme.starts_with(|c: char| c.is_ascii_alphabetic())
+            && scheme.chars().all(|c| c.is_ascii_alphanumeric() || "+-.".contains(c))
+    })
+}
+
+/// The component by which `relative` gets out of the folder it starts in, on paper.
+fn leaves(relative: &Path) -> Option<Component<'_>> {
+    let mut depth = 0_usize;
+    for component in relative.components() {
+        match component {
+            Component::Normal(_) => depth += 1,
+            Component::CurDir => {}
+            Component::ParentDir if depth > 0 => depth -= 1,
+            outside => return Some(outside),
+        }
+    }
+    None
+}
+
+fn unreadable(path: &Path, error: &std::io::Error) -> Error {
+    Error::new(
+        path,
+        format!("cannot be read ({error})"),
+        "a readable file",
+        "check the path and its permissions",
+    )
+}

@@ -1,0 +1,82 @@
+//! Punctual lights and cameras: what stands in a scene beside its parts.
+
+use super::document::Document;
+use super::nodes::Placed;
+use super::notes::Notes;
+use equilux_formats::{Camera, LightKind, PunctualLight, Result};
+use glam::{DAffine3, DMat3, DVec3};
+use gltf::khr_lights_punctual::{Kind, Light};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The light at a node. The scale of the node does not act on its intensity (KHR_lights_punctual).
+pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Result<PunctualLight> {
+    let wrong = |found: String, expected: &str| {
+        document.error(format!("light {} with {found}", placed.name()), expected, "correct the light")
+    };
+    let intensity = source.color().map(|color| f64::from(color) * f64::from(source.intensity()));
+    if !intensity.iter().all(|i| i.is_finite() && *i >= 0.0) {
+        return Err(wrong(format!("the intensity {intensity:?}"), "finite numbers, 0 or more"));
+    }
+    let kind = match source.kind() {
+        Kind::Point => LightKind::Point,
+        Kind::Directional => LightKind::Directional,
+        Kind::Spot { inner_cone_angle, outer_cone_angle } => {
+            let (inner, outer) = (f64::from(inner_cone_angle), f64::from(outer_cone_angle));
+            // glTF bounds the outer angle by π/2, which rounds up in f32.
+            if !(0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6) {
+                return Err(wrong(format!("the cone {inner} to {outer}"), "0 ≤ inner < outer ≤ π/2"));
+            }
+            LightKind::Spot { inner, outer: outer.min(FRAC_PI_2) }
+        }
+    };
+    let at_origin = PunctualLight {
+        name: placed.name(),
+        position: DVec3::ZERO,
+        direction: DVec3::NEG_Z,
+        intensity,
+        kind,
+    };
+    Ok(moved(&at_origin, placed.placement, placed.emission_scale))
+}
+
+/// `light` after `placement`, with its intensity scaled.
+pub(super) fn moved(light: &PunctualLight, placement: DAffine3, emission_scale: f64) -> PunctualLight {
+    PunctualLight {
+        position: placement.transform_point3(light.position),
+        // A node flattened to nothing leaves no direction; the light keeps its own.
+        direction: placement.transform_vector3(light.direction).try_normalize().unwrap_or(light.direction),
+        intensity: light.intensity.map(|i| i * emission_scale),
+        ..light.clone()
+    }
+}
+
+/// The camera at a node, if it is one this project can look through.
+pub(super) fn camera(document: &Document, placed: &Placed, notes: &mut Notes) -> Result<Option<Camera>> {
+    let Some(index) = placed.node.camera().map(|camera| camera.index()) else { return Ok(None) };
+    // From the JSON, as the crate believes the stated type even where the object for it is missing.
+    let Some(lens) = &document.gltf.as_json().cameras[index].perspective else {
+        notes.add(format!("camera {}", placed.name()), "orthographic, which is not supported, and ignored");
+        return Ok(None);
+    };
+    let (vertical_fov, aspect) = (f64::from(lens.yfov), lens.aspect_ratio.map(f64::from));
+    if !(vertical_fov > 0.0
+        && vertical_fov < PI
+        && aspect.is_none_or(|ratio| ratio > 0.0 && ratio.is_finite()))
+    {
+        return Err(document.error(
+            format!("camera {} with yfov {vertical_fov} and aspectRatio {aspect:?}", placed.name()),
+            "0 < yfov < π and aspectRatio > 0",
+            "correct the camera",
+        ));
+    }
+    let placement = without_scale(placed.placement);
+    Ok(Some(Camera { name: placed.name(), placement, vertical_fov, aspect }))
+}
+
+/// glTF takes cameras to be unscaled: what is left is where the camera stands, where it looks and what is up.
+fn without_scale(placement: DAffine3) -> DAffine3 {
+    let back = placement.matrix3.z_axis.normalize_or(DVec3::Z);
+    let up = placement.matrix3.y_axis.reject_from_normalized(back);
+    let up = up.try_normalize().unwrap_or_else(|| back.any_orthonormal_vector());
+    DAffine3 { matrix3: DMat3::from_cols(up.cross(back), up, back), translation: placement.translation }
+}

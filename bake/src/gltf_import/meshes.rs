@@ -1,0 +1,71 @@
+//! Meshes read once, however often they are placed: surfaces in mesh coordinates and the material of each primitive.
+
+use super::document::Document;
+use super::materials::material;
+use super::notes::Notes;
+use super::surfaces::{Dropped, surfaces};
+use super::triangles::triangles;
+use equilux_formats::{Corners, Material, Result};
+use std::collections::HashMap;
+use std::rc::Rc;
+
+/// A mesh in its own coordinates.
+#[derive(Default)]
+pub(super) struct Mesh {
+    /// Surfaces and material of each primitive.
+    pub(super) primitives: Vec<(Vec<Corners>, Material)>,
+    /// What was left out of it.
+    pub(super) dropped: Dropped,
+}
+
+/// The meshes of one document.
+pub(super) struct Meshes<'a> {
+    document: &'a Document,
+    read: HashMap<usize, Rc<Mesh>>,
+}
+
+impl<'a> Meshes<'a> {
+    /// No mesh of `document` has been read yet.
+    pub(super) fn of(document: &'a Document) -> Self {
+        Self { document, read: HashMap::new() }
+    }
+
+    /// The mesh `source` of the document.
+    pub(super) fn get(&mut self, source: &gltf::Mesh, notes: &mut Notes) -> Result<Rc<Mesh>> {
+        if let Some(mesh) = self.read.get(&source.index()) {
+            return Ok(Rc::clone(mesh));
+        }
+        let mesh = Rc::new(read_mesh(self.document, source, notes)?);
+        self.read.insert(source.index(), Rc::clone(&mesh));
+        Ok(mesh)
+    }
+}
+
+fn read_mesh(document: &Document, source: &gltf::Mesh, notes: &mut Notes) -> Result<Mesh> {
+    let name = source.name().map_or_else(|| source.index().to_string(), str::to_owned);
+    let subject = format!("mesh {name}");
+    let mut mesh = Mesh::default();
+    for primitive in source.primitives() {
+        let Some(triangles) = triangles(document, &primitive, &name)? else {
+            notes.add(&subject, "points and lines are ignored, they have no area");
+            continue;
+        };
+        if primitive.material().index().is_none() {
+            notes.add(&subject, "no material, so white with reflectance 1 as glTF has it");
+        }
+        if primitive.morph_targets().len() > 0 {
+            notes.add(&subject, "morph targets are ignored");
+        }
+        let surfaces = surfaces(&triangles);
+        if let Some((step, edge)) = surfaces.lost_digits {
+            let remark = format!(
+                "positions are so large that f32 steps by {step:.1e} m beside an edge of {edge:.1e} m: digits are lost; \
+                 model near the origin and move the node"
+            );
+            notes.add(&subject, remark);
+        }
+        mesh.dropped += surfaces.dropped;
+        mesh.primitives.push((surfaces.corners, material(document, &primitive.material(), notes)?));
+    }
+    Ok(mesh)
+}

@@ -1,0 +1,229 @@
+//! glTF → [`Scene`]. All that is untidy about glTF ends here: in goes a `.gltf` or `.glb` file with the files it refers
+//! to, out come parts of clean surfaces, their instances, cameras and lights, and notes on what was left out.
+//!
+//! - A part is a root node with all below it. A lone root that only wraps others is looked through. Roots with equal
+//!   contents are instances of one part.
+//! - A node whose extras name a `part` file is an instance of that file's contents.
+//! - A part's coordinates start at zero, so that shapes far from the origin keep their digits; placements are
+//!   similarities, so that form factors are the same in each instance.
+//! - Bad input is refused, naming file, finding, expectation and remedy; input that is merely more than radiosity can
+//!   use is noted.
+
+mod accessors;
+mod buffers;
+mod document;
+mod drafts;
+mod extras;
+mod files;
+mod lights;
+mod materials;
+mod meshes;
+mod nodes;
+mod notes;
+mod part_files;
+mod parts;
+mod surfaces;
+mod triangles;
+
+use document::Document;
+use drafts::{Draft, Settings};
+use equilux_formats::{Instance, LocalSolver, PartId, Result, Scene};
+use glam::{DAffine3, DMat3, DVec3};
+use lights::{camera, light, moved};
+use meshes::Meshes;
+use nodes::{Placed, part_roots, subtree};
+use part_files::{PartFiles, no_surfaces};
+use parts::{Catalogue, settle, split};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use surfaces::Dropped;
+
+/// Reads a scene.
+///
+/// # Errors
+/// Files that are missing, truncated or not glTF 2.0; that contradict themselves; that require an extension unknown
+/// here; that refer to anything outside the scene's folder; that hold reflectances outside 0..1, or no surfaces.
+pub fn import_scene(file: &Path) -> Result<Scene> {
+    let mut part_files = PartFiles::around(file)?;
+    let document = part_files.open(file)?;
+    let mut stage = Stage::new(&document, part_files);
+    for root in part_roots(&document)? {
+        stage.add_root(root)?;
+    }
+    stage.into_scene()
+}
+
+/// The scene as it fills.
+struct Stage<'a> {
+    document: &'a Document,
+    part_files: PartFiles,
+    meshes: Meshes<'a>,
+    catalogue: Catalogue,
+    /// What became of recipes met before: their part and where it starts, or nothing if no face was left.
+    made: HashMap<Recipe, Option<(PartId, DVec3)>>,
+    scene: Scene,
+}
+
+/// What a part is made from; equal recipes make equal parts. Floats as bits.
+#[derive(PartialEq, Eq, Hash)]
+struct Recipe {
+    file: Option<PathBuf>,
+    /// Mesh, placement and emission scale of each node.
+    nodes: Vec<(usize, [u64; 12], u64)>,
+    settings: (Option<u64>, Option<LocalSolver>),
+    linear: [u64; 9],
+}
+
+/// What stands at a node.
+enum Contents<'a> {
+    /// Nodes with meshes, in the coordinates of the node.
+    Nodes(Vec<Placed<'a>>),
+    /// A part file.
+    File(PathBuf, Rc<Draft>),
+}
+
+impl<'a> Stage<'a> {
+    fn new(document: &'a Document, part_files: PartFiles) -> Self {
+        let scene = Scene {
+            name: document.stem(),
+            file: document.path.clone(),
+            sources: Vec::new(),
+            parts: Vec::new(),
+            instances: Vec::new(),
+            cameras: Vec::new(),
+            lights: Vec::new(),
+            notes: Vec::new(),
+        };
+        let meshes = Meshes::of(document);
+        Self { document, part_files, meshes, catalogue: Catalogue::default(), made: HashMap::new(), scene }
+    }
+
+    fn into_scene(self) -> Result<Scene> {
+        if self.scene.instances.is_empty() {
+            return Err(no_surfaces(&self.document.path));
+        }
+        let PartFiles { files, notes, .. } = self.part_files;
+        let (sources, notes) = (files.sources, notes.into_sentences());
+        Ok(Scene { sources, notes, parts: self.catalogue.parts, ..self.scene })
+    }
+
+    /// Adds the part that `root` is, then whatever else stands below it.
+    fn add_root(&mut self, root: Placed<'a>) -> Result<()> {
+        let mut own = subtree(self.document, root.as_origin())?;
+        own.retain(|placed| placed.extras.part.is_none());
+        let mut settings = Settings::default();
+        own.iter().for_each(|placed| {
+            settings.hear(Settings::of(&placed.extras), &placed.name(), &mut self.part_files.notes);
+        });
+        own.retain(|placed| placed.node.mesh().is_some());
+        if !own.is_empty() {
+            self.place(&root, settings, Contents::Nodes(own))?;
+        }
+        subtree(self.document, root)?.iter().try_for_each(|placed| self.add_other(placed))
+    }
+
+    /// Adds what is not a mesh: a part file, a light, a camera.
+    fn add_other(&mut self, placed: &Placed<'a>) -> Result<()> {
+        if let Some(reference) = &placed.extras.part {
+            let (path, draft) = self.part_files.draft(self.document, placed, reference)?;
+            let lights = draft.lights.iter();
+            self.scene
+                .lights
+                .extend(lights.map(|light| moved(light, placed.placement, placed.emission_scale)));
+            let settings = Settings::of(&placed.extras).or(draft.settings);
+            self.place(placed, settings, Contents::File(path, draft))?;
+        }
+        if let Some(source) = placed.node.light() {
+            self.scene.lights.push(light(self.document, placed, &source)?);
+        }
+        self.scene.cameras.extend(camera(self.document, placed, &mut self.part_files.notes)?);
+        Ok(())
+    }
+
+    fn place(&mut self, placed: &Placed<'a>, settings: Settings, contents: Contents<'a>) -> Result<()> {
+        let (linear, placement) = split(placed.placement);
+        let recipe = recipe(&contents, settings, linear);
+        let made = match self.made.get(&recipe) {
+            Some(made) => *made,
+            None => {
+                let made = self.make(placed, settings, contents, linear)?;
+                self.made.insert(recipe, made);
+                made
+            }
+        };
+        let instance = |(part, start)| Instance {
+            name: placed.name(),
+            part,
+            placement: placement * DAffine3::from_translation(start),
+            emission_scale: placed.emission_scale,
+        };
+        self.scene.instances.extend(made.map(instance));
+        Ok(())
+    }
+
+    fn make(
+        &mut self,
+        placed: &Placed<'a>,
+        settings: Settings,
+        contents: Contents<'a>,
+        linear: DMat3,
+    ) -> Result<Option<(PartId, DVec3)>> {
+        let (name, draft) = match contents {
+            Contents::Nodes(nodes) => (placed.name(), Rc::new(self.draft(&nodes)?)),
+            Contents::File(path, draft) => {
+                (path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), draft)
+            }
+        };
+        let (part, start, dropped) = settle(&draft, linear, settings, name.clone());
+        if part.surfaces.is_empty() {
+            self.part_files.notes.add(placed.name(), "left out, none of its faces has an area");
+            return Ok(None);
+        }
+        let known = self.catalogue.parts.len();
+        let id = self.catalogue.id(part);
+        if id.index() == known && dropped != Dropped::default() {
+            self.part_files.notes.add(name, remark(dropped));
+        }
+        Ok(Some((id, start)))
+    }
+
+    fn draft(&mut self, nodes: &[Placed<'a>]) -> Result<Draft> {
+        let mut draft = Draft::default();
+        for placed in nodes {
+            let Some(mesh) = placed.node.mesh() else { continue };
+            let mesh = self.meshes.get(&mesh, &mut self.part_files.notes)?;
+            draft.add_mesh(self.document, &mesh, placed.placement, placed.emission_scale)?;
+        }
+        Ok(draft)
+    }
+}
+
+fn recipe(contents: &Contents, settings: Settings, linear: DMat3) -> Recipe {
+    let mesh = |placed: &Placed| {
+        let index = placed.node.mesh().map_or(usize::MAX, |mesh| mesh.index());
+        (index, placed.placement.to_cols_array().map(f64::to_bits), placed.emission_scale.to_bits())
+    };
+    let (file, nodes) = match contents {
+        Contents::Nodes(nodes) => (None, nodes.iter().map(mesh).collect()),
+        Contents::File(path, _) => (Some(path.clone()), Vec::new()),
+    };
+    Recipe {
+        file,
+        nodes,
+        settings: (settings.element_size.map(f64::to_bits), settings.local_solver),
+        linear: linear.to_cols_array().map(f64::to_bits),
+    }
+}
+
+fn remark(dropped: Dropped) -> String {
+    let count = |count: usize, what: &str, rest: &str| {
+        let plural = if count == 1 { "" } else { "s" };
+        (count > 0).then(|| format!("{count} {what}{plural}{rest}"))
+    };
+    let counts = [
+        count(dropped.without_area, "face", " without area"),
+        count(dropped.duplicates, "duplicate face", ""),
+    ];
+    format!("dropped {}", counts.into_iter().flatten().collect::<Vec<_>>().join(" and "))
+}

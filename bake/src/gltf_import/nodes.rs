@@ -1,0 +1,170 @@
+//! The node hierarchy, flattened: in goes a document, out come its nodes in the order of the file, each with where it
+//! stands and what its extras say. Nothing here recurses, so a chain of a million nodes is read like any other file.
+
+use super::document::Document;
+use super::extras::Extras;
+use equilux_formats::Result;
+use glam::{DAffine3, DMat4, DQuat, DVec3};
+use gltf::Node;
+use gltf::scene::Transform;
+
+/// A node and what it inherits from the nodes above it.
+#[derive(Clone)]
+pub(super) struct Placed<'a> {
+    pub(super) node: Node<'a>,
+    pub(super) extras: Extras,
+    /// Node coordinates → coordinates of whatever the walk began in.
+    pub(super) placement: DAffine3,
+    /// Product of the emission scales from the start of the walk to this node.
+    pub(super) emission_scale: f64,
+}
+
+impl<'a> Placed<'a> {
+    /// The same node as a walk sees it that starts in the node itself.
+    pub(super) fn as_origin(&self) -> Self {
+        Self { placement: DAffine3::IDENTITY, emission_scale: 1.0, ..self.clone() }
+    }
+
+    /// The name of the node.
+    pub(super) fn name(&self) -> String {
+        label(&self.node)
+    }
+
+    fn child(&self, document: &Document, node: Node<'a>) -> Result<Self> {
+        let extras = Extras::of(document, &node)?;
+        let placement = self.placement * local_transform(document, &node)?;
+        if !placement.is_finite() {
+            return Err(document.error(
+                format!("node {} with a transform too large to compute with", label(&node)),
+                "coordinates of a few kilometres at most",
+                "correct the scales of the node and of those above it",
+            ));
+        }
+        let emission_scale = self.emission_scale * extras.emission_scale.unwrap_or(1.0);
+        Ok(Self { node, extras, placement, emission_scale })
+    }
+}
+
+/// What a node is called: its name, its mesh's, or its number.
+pub(super) fn label(node: &Node) -> String {
+    let named = node.name().or_else(|| node.mesh().and_then(|mesh| mesh.name()));
+    named.filter(|name| !name.is_empty()).map_or_else(|| format!("node {}", node.index()), str::to_owned)
+}
+
+/// The root nodes of the scene, by their own transforms. Fails unless each node has one place in the hierarchy.
+pub(super) fn roots(document: &Document) -> Result<Vec<Placed<'_>>> {
+    let roots = root_nodes(document);
+    check_tree(document, &roots)?;
+    roots.into_iter().map(|node| above_roots(&node).child(document, node)).collect()
+}
+
+fn above_roots<'a>(any: &Node<'a>) -> Placed<'a> {
+    Placed {
+        node: any.clone(),
+        extras: Extras::default(),
+        placement: DAffine3::IDENTITY,
+        emission_scale: 1.0,
+    }
+}
+
+/// The nodes that are parts: the roots, or what hangs below a root that only wraps the whole scene.
+pub(super) fn part_roots(document: &Document) -> Result<Vec<Placed<'_>>> {
+    let mut roots = roots(document)?;
+    while let [wrapper] = roots.as_slice()
+        && is_wrapper(wrapper)
+    {
+        roots = children(document, wrapper)?;
+    }
+    Ok(roots)
+}
+
+fn is_wrapper(placed: &Placed) -> bool {
+    let node = &placed.node;
+    let holds = node.mesh().is_some() || node.camera().is_some() || node.light().is_some();
+    !holds && !placed.extras.any() && node.children().len() > 0
+}
+
+/// `start` and all below it, parents before children. What hangs below a node with a `part` is not visited: the part's
+/// file stands there instead.
+pub(super) fn subtree<'a>(document: &'a Document, start: Placed<'a>) -> Result<Vec<Placed<'a>>> {
+    let (mut visited, mut open) = (Vec::new(), vec![start]);
+    while let Some(placed) = open.pop() {
+        if placed.extras.part.is_none() {
+            open.extend(children(document, &placed)?.into_iter().rev());
+        }
+        visited.push(placed);
+    }
+    Ok(visited)
+}
+
+fn children<'a>(document: &Document, parent: &Placed<'a>) -> Result<Vec<Placed<'a>>> {
+    parent.node.children().map(|node| parent.child(document, node)).collect()
+}
+
+fn root_nodes(document: &Document) -> Vec<Node<'_>> {
+    let gltf = &document.gltf;
+    match gltf.default_scene().or_else(|| gltf.scenes().next()) {
+        Some(scene) => scene.nodes().collect(),
+        None => {
+            let mut is_child = vec![false; gltf.nodes().len()];
+            gltf.nodes().flat_map(|node| node.children()).for_each(|child| is_child[child.index()] = true);
+            gltf.nodes().filter(|node| !is_child[node.index()]).collect()
+        }
+    }
+}
+
+/// Walks the whole hierarchy and fails where a node is met again, be it as its own ancestor or below a second parent:
+/// walks could not end, or grow without bounds.
+fn check_tree(document: &Document, roots: &[Node]) -> Result<()> {
+    let mut parent_of: Vec<Option<Option<usize>>> = vec![None; document.gltf.nodes().len()];
+    let mut open: Vec<(Node, Option<usize>)> = roots.iter().map(|root| (root.clone(), None)).collect();
+    while let Some((node, parent)) = open.pop() {
+        if parent_of[node.index()].is_some() {
+            let ancestors = std::iter::successors(parent, |&at| parent_of[at].flatten());
+            let why = match ancestors.take(parent_of.len()).any(|ancestor| ancestor == node.index()) {
+                true => "is below itself, a cycle",
+                false => "hangs in two places",
+            };
+            return Err(document.error(
+                format!("node {} {why}", label(&node)),
+                "a tree of nodes, each with one parent",
+                "remove the node from all but one list of children",
+            ));
+        }
+        parent_of[node.index()] = Some(parent);
+        open.extend(node.children().map(|child| (child, Some(node.index()))));
+    }
+    Ok(())
+}
+
+/// Node coordinates → its parent's. In f64 and with a normalised quaternion, for rotations that keep lengths.
+fn local_transform(document: &Document, node: &Node) -> Result<DAffine3> {
+    let wrong = |found: &str, expected: &str| {
+        document.error(format!("node {} with {found}", label(node)), expected, "apply the node's transform")
+    };
+    let transform = match node.transform() {
+        Transform::Matrix { matrix } => {
+            let matrix = DMat4::from_cols_array_2d(&matrix.map(|column| column.map(f64::from)));
+            if matrix.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
+                return Err(wrong("a projective matrix", "a fourth row of 0 0 0 1"));
+            }
+            DAffine3::from_mat4(matrix)
+        }
+        Transform::Decomposed { translation, rotation, scale } => {
+            let rotation = DQuat::from_array(rotation.map(f64::from));
+            if !(rotation.length() > 0.0 && rotation.is_finite()) {
+                return Err(wrong("a rotation that is no quaternion", "a unit quaternion"));
+            }
+            let vector = |components: [f32; 3]| DVec3::from_array(components.map(f64::from));
+            DAffine3::from_scale_rotation_translation(
+                vector(scale),
+                rotation.normalize(),
+                vector(translation),
+            )
+        }
+    };
+    match transform.is_finite() {
+        true => Ok(transform),
+        false => Err(wrong("a transform that is not finite", "finite numbers")),
+    }
+}

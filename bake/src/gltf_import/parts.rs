@@ -1,0 +1,145 @@
+//! Drafts → parts and instances. A placement becomes a similarity, as form factors do not change under one: what else
+//! the root's transform does is worked into the part. Then the part is moved so that its coordinates start at zero, and
+//! parts with equal contents become one.
+
+use super::drafts::{Draft, Materials, Settings, transformed};
+use super::materials::same_material;
+use super::surfaces::{Dropped, Seen, f64_spacing, has_area};
+use equilux_formats::{Part, PartId, Surface};
+use glam::{DAffine3, DMat3, DVec3};
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+/// How far a transform may be from a similarity, relative: what f32 leaves of a rotation.
+const SIMILARITY: f64 = 1e-6;
+
+/// Splits a root's transform in what is worked into the part and what places it.
+pub(super) fn split(transform: DAffine3) -> (DMat3, DAffine3) {
+    match is_similarity(transform.matrix3) {
+        true => (DMat3::IDENTITY, transform),
+        false => (transform.matrix3, DAffine3::from_translation(transform.translation)),
+    }
+}
+
+/// Whether `linear` is a rotation, perhaps mirrored, times a scale: LᵀL = s²·1. The square doubles the tolerance.
+fn is_similarity(linear: DMat3) -> bool {
+    let gram = linear.transpose() * linear;
+    let square = (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z) / 3.0;
+    let off = gram - DMat3::from_diagonal(DVec3::splat(square));
+    let off = off.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
+    square > 0.0 && off <= 2.0 * SIMILARITY * square
+}
+
+/// The part made of `draft` after `linear`, where its coordinates start in the draft's, and what was left out of it.
+pub(super) fn settle(
+    draft: &Draft,
+    linear: DMat3,
+    settings: Settings,
+    name: String,
+) -> (Part, DVec3, Dropped) {
+    let linear = DAffine3::from_mat3(linear);
+    let placed = draft.surfaces.iter().map(|s| Surface { corners: transformed(&s.corners, linear), ..*s });
+    let placed: Vec<Surface> = placed.filter(|surface| has_area(&surface.corners, rounding)).collect();
+    let start = lowest_corner(&placed);
+
+    let mut dropped = draft.dropped;
+    dropped.without_area += draft.surfaces.len() - placed.len();
+    let (mut surfaces, mut seen, mut materials) = (Vec::new(), Seen::default(), Materials::default());
+    let mut renumbered = vec![None; draft.materials.0.len()];
+    for surface in placed {
+        // Adding 0 turns −0 into 0, so that equal parts are equal bit by bit.
+        let corners = surface.corners.map(|corner| corner - start + 0.0);
+        // Again: beside a corner at 1e30 m this subtraction leaves nothing of a wall.
+        if !has_area(&corners, rounding) {
+            dropped.without_area += 1;
+        } else if !seen.first_time(&corners) {
+            dropped.duplicates += 1;
+        } else {
+            let old = surface.material.index();
+            let material =
+                *renumbered[old].get_or_insert_with(|| materials.id(draft.materials.0[old].clone()));
+            surfaces.push(Surface { corners, material });
+        }
+    }
+    let Settings { element_size, local_solver } = settings;
+    (Part { name, surfaces, materials: materials.0, element_size, local_solver }, start, dropped)
+}
+
+/// What transforms may add to a coordinate of this magnitude: sums of a few rounded products.
+fn rounding(magnitude: f64) -> f64 {
+    16.0 * f64_spacing(magnitude)
+}
+
+fn lowest_corner(surfaces: &[Surface]) -> DVec3 {
+    let corners = surfaces.iter().flat_map(|surface| surface.corners.as_slice());
+    corners.copied().reduce(DVec3::min).unwrap_or(DVec3::ZERO)
+}
+
+/// The distinct parts of a scene.
+#[derive(Default)]
+pub(super) struct Catalogue {
+    pub(super) parts: Vec<Part>,
+    by_content: HashMap<u64, Vec<PartId>>,
+}
+
+impl Catalogue {
+    /// The id of the part with the contents of `part`.
+    pub(super) fn id(&mut self, part: Part) -> PartId {
+        let alike = self.by_content.entry(content_hash(&part)).or_default();
+        if let Some(&known) = alike.iter().find(|id| same_content(&self.parts[id.index()], &part)) {
+            return known;
+        }
+        let id = PartId::from_index(self.parts.len());
+        alike.push(id);
+        self.parts.push(part);
+        id
+    }
+}
+
+fn content_hash(part: &Part) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    part.element_size.map(f64::to_bits).hash(&mut hasher);
+    part.local_solver.hash(&mut hasher);
+    for surface in &part.surfaces {
+        surface.material.hash(&mut hasher);
+        surface
+            .corners
+            .as_slice()
+            .iter()
+            .for_each(|corner| corner.to_array().map(f64::to_bits).hash(&mut hasher));
+    }
+    hasher.finish()
+}
+
+/// Whether two parts differ in nothing but names.
+fn same_content(left: &Part, right: &Part) -> bool {
+    (left.element_size, left.local_solver) == (right.element_size, right.local_solver)
+        && left.surfaces == right.surfaces
+        && left.materials.len() == right.materials.len()
+        && left.materials.iter().zip(&right.materials).all(|(left, right)| same_material(left, right))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DQuat;
+
+    #[test]
+    fn a_similarity_places_and_anything_else_is_worked_in() {
+        let turn = DMat3::from_quat(DQuat::from_rotation_x(0.7) * DQuat::from_rotation_z(2.0));
+        let rounded = DMat3::from_cols_array(&turn.to_cols_array().map(|x| f64::from(x as f32)));
+        for (case, linear, placed) in [
+            ("a turn", turn, true),
+            ("a turn that was rounded to f32", rounded, true),
+            ("a scaled mirror", turn * DMat3::from_diagonal(DVec3::new(-3.0, 3.0, 3.0)), true),
+            ("a stretch", turn * DMat3::from_diagonal(DVec3::new(1.0, 1.0, 1.001)), false),
+            ("a flattening", DMat3::from_diagonal(DVec3::new(1.0, 1.0, 0.0)), false),
+            ("nothing", DMat3::ZERO, false),
+        ] {
+            let transform = DAffine3 { matrix3: linear, translation: DVec3::X };
+            let (worked_in, placement) = split(transform);
+            assert_eq!(worked_in == DMat3::IDENTITY, placed, "{case}");
+            assert_eq!(placement * DAffine3::from_mat3(worked_in), transform, "{case}");
+        }
+    }
+}

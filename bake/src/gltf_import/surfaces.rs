@@ -1,0 +1,322 @@
+//! Triangles → clean surfaces: faces without area and repeated faces go, two triangles that are the halves of a
+//! quad become one. In go the triangles of one primitive, out come its surfaces in the same order.
+
+use super::triangles::Triangles;
+use equilux_formats::Corners;
+use glam::DVec3;
+use std::collections::{HashMap, HashSet};
+use std::ops::AddAssign;
+
+/// How far, in steps of f32, the fourth corner of a quad may be off: each of the four corners was rounded.
+const ROUNDED_CORNERS: f64 = 4.0;
+/// The same in diagonals: beyond that a quad would be visibly bent, however coarse the steps are.
+const BEND: f64 = 1e-4;
+/// Sine of the bluntest corner of a quad that is no parallelogram; cutting up a blunter one makes needles.
+const BLUNTEST: f64 = 0.1;
+/// Steps of f32 that are larger than this share of an edge distort the shape.
+const LOST_DIGITS: f64 = 1e-4;
+/// Triangles looked at across one edge; thousands around one edge would otherwise take quadratic time.
+const NEIGHBOURS: usize = 16;
+
+/// What was left out.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Dropped {
+    pub(super) without_area: usize,
+    pub(super) duplicates: usize,
+}
+
+impl AddAssign for Dropped {
+    fn add_assign(&mut self, other: Self) {
+        self.without_area += other.without_area;
+        self.duplicates += other.duplicates;
+    }
+}
+
+/// The surfaces of a primitive.
+pub(super) struct Surfaces {
+    pub(super) corners: Vec<Corners>,
+    pub(super) dropped: Dropped,
+    /// The step of f32 and the shortest edge, metres, where the step is too coarse for the edge.
+    pub(super) lost_digits: Option<(f64, f64)>,
+}
+
+/// Cleans `triangles` and pairs them.
+pub(super) fn surfaces(triangles: &Triangles) -> Surfaces {
+    let spacing = if triangles.rounded { f32_spacing } else { f64_spacing };
+    let (kept, dropped) = clean(&triangles.corners, spacing);
+    let step = spacing(kept.iter().map(|kept| largest_coordinate(&kept.corners)).fold(0.0, f64::max));
+    let shortest =
+        kept.iter().flat_map(|kept| edges(&kept.corners)).map(DVec3::length).fold(f64::MAX, f64::min);
+    let lost_digits = (!kept.is_empty() && step > LOST_DIGITS * shortest).then_some((step, shortest));
+    Surfaces { corners: pair(&kept, step), dropped, lost_digits }
+}
+
+/// The distance from `magnitude` to the next f32.
+fn f32_spacing(magnitude: f64) -> f64 {
+    let magnitude = magnitude as f32;
+    f64::from(magnitude.next_up()) - f64::from(magnitude)
+}
+
+/// The distance from `magnitude` to the next f64.
+pub(super) fn f64_spacing(magnitude: f64) -> f64 {
+    magnitude.next_up() - magnitude
+}
+
+/// Whether a polygon is higher than what rounding makes of a flat one: half a `spacing` at its coordinates.
+pub(super) fn has_area(corners: &Corners, spacing: fn(f64) -> f64) -> bool {
+    let points = corners.as_slice();
+    let longest = edges(points).map(DVec3::length).fold(0.0, f64::max);
+    corners.double_area_vector().length() > 0.5 * spacing(largest_coordinate(points)) * longest
+}
+
+fn edges(points: &[DVec3]) -> impl Iterator<Item = DVec3> {
+    points.iter().zip(points.iter().cycle().skip(1)).map(|(from, to)| to - from)
+}
+
+fn largest_coordinate(points: &[DVec3]) -> f64 {
+    points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max)
+}
+
+/// Gives equal points equal numbers.
+#[derive(Default)]
+struct Welder(HashMap<[u64; 3], usize>);
+
+impl Welder {
+    fn number(&mut self, point: DVec3) -> usize {
+        let next = self.0.len();
+        // Adding 0 makes −0 and 0 one number.
+        *self.0.entry(point.to_array().map(|x| (x + 0.0).to_bits())).or_insert(next)
+    }
+}
+
+/// The faces met so far, by their corners, from whichever of them they start.
+#[derive(Default)]
+pub(super) struct Seen {
+    welder: Welder,
+    faces: HashSet<[usize; 4]>,
+}
+
+impl Seen {
+    /// Whether a face with these corners and this orientation is met for the first time.
+    pub(super) fn first_time(&mut self, corners: &Corners) -> bool {
+        let points = corners.as_slice();
+        let mut key = [usize::MAX; 4];
+        for (number, &point) in key.iter_mut().zip(points) {
+            *number = self.welder.number(point);
+        }
+        let numbers = &mut key[..points.len()];
+        let first = (0..numbers.len()).min_by_key(|&at| numbers[at]).unwrap_or(0);
+        numbers.rotate_left(first);
+        self.faces.insert(key)
+    }
+}
+
+/// A triangle worth keeping.
+struct Kept {
+    corners: [DVec3; 3],
+    /// Its position in the primitive.
+    source: usize,
+}
+
+fn clean(triangles: &[[DVec3; 3]], spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropped) {
+    let (mut kept, mut dropped, mut seen) = (Vec::new(), Dropped::default(), Seen::default());
+    for (source, &corners) in triangles.iter().enumerate() {
+        let face = Corners::triangle(corners);
+        if !has_area(&face, spacing) {
+            dropped.without_area += 1;
+        } else if !seen.first_time(&face) {
+            dropped.duplicates += 1;
+        } else {
+            kept.push(Kept { corners, source });
+        }
+    }
+    (kept, dropped)
+}
+
+/// Pairs the halves of quads. Exporters write the two triangles of a quad one after the other, so there any flat convex
+/// quad is taken for one that was modelled; of what is left, lowest index first, only parallelograms are.
+fn pair(kept: &[Kept], step: f64) -> Vec<Corners> {
+    let mut quads: Vec<Option<[DVec3; 4]>> = vec![None; kept.len()];
+    let mut paired = vec![false; kept.len()];
+    for first in 0..kept.len().saturating_sub(1) {
+        let halves = [&kept[first], &kept[first + 1]];
+        if halves[0].source.is_multiple_of(2) && halves[1].source == halves[0].source + 1 {
+            quads[first] =
+                halves_of(halves).filter(|quad| is_parallelogram(quad, step) || is_convex(quad, step));
+            paired[first..first + 2].fill(quads[first].is_some());
+        }
+    }
+    let neighbours = Neighbours::of(kept, &paired);
+    for first in 0..kept.len() {
+        if paired[first] {
+            continue;
+        }
+        let others = neighbours.of_triangle(first).filter(|&other| other > first && !paired[other]);
+        let fitting = others.filter_map(|other| {
+            let quad = halves_of([&kept[first], &kept[other]])?;
+            is_parallelogram(&quad, step).then_some((other, quad))
+        });
+        if let Some((second, quad)) = fitting.min_by_key(|(other, _)| *other) {
+            quads[first] = Some(quad);
+            (paired[first], paired[second]) = (true, true);
+        }
+    }
+    let surface = |(at, kept): (usize, &Kept)| match quads[at] {
+        Some(quad) => Some(Corners::quad(quad)),
+        None => (!paired[at]).then(|| Corners::triangle(kept.corners)),
+    };
+    kept.iter().enumerate().filter_map(surface).collect()
+}
+
+/// The quad of which the two triangles are halves, starting at the first one's first corner.
+fn halves_of(halves: [&Kept; 2]) -> Option<[DVec3; 4]> {
+    let [first, second] = halves.map(|half| half.corners);
+    for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+        let (from, to, apex) = (first[i], first[(i + 1) % 3], first[(i + 2) % 3]);
+        if second[j] == to && second[(j + 1) % 3] == from {
+            let mut quad = [from, second[(j + 2) % 3], to, apex];
+            quad.rotate_left([0, 3, 2][i]);
+            return Some(quad);
+        }
+    }
+    None
+}
+
+/// How far corners may be off beside a diagonal of this length.
+fn slack(quad: &[DVec3; 4], step: f64) -> f64 {
+    let [a, b, c, d] = *quad;
+    (ROUNDED_CORNERS * step).min(BEND * (c - a).length().max((d - b).length()))
+}
+
+fn is_parallelogram(quad: &[DVec3; 4], step: f64) -> bool {
+    let [a, b, c, d] = *quad;
+    ((a - b) + (c - d)).abs().max_element() <= slack(quad, step)
+}
+
+/// Whether the quad is flat and turns well to the same side at each corner.
+fn is_convex(quad: &[DVec3; 4], step: f64) -> bool {
+    let [a, b, c, d] = *quad;
+    let normal = (c - a).cross(d - b).normalize_or_zero();
+    let turns = (0..4).all(|i| {
+        let (before, after) = (quad[(i + 1) % 4] - quad[i], quad[(i + 2) % 4] - quad[(i + 1) % 4]);
+        before.cross(after).dot(normal) > BLUNTEST * before.length() * after.length()
+    });
+    turns && (b - a).dot(normal).abs() <= slack(quad, step)
+}
+
+/// Which triangles lie across each edge of each triangle.
+struct Neighbours {
+    corners: Vec<[usize; 3]>,
+    by_edge: HashMap<(usize, usize), Vec<usize>>,
+}
+
+impl Neighbours {
+    /// Neighbours among the triangles that are not `paired` yet.
+    fn of(kept: &[Kept], paired: &[bool]) -> Self {
+        let mut welder = Welder::default();
+        let corners: Vec<[usize; 3]> =
+            kept.iter().map(|kept| kept.corners.map(|corner| welder.number(corner))).collect();
+        let mut by_edge: HashMap<_, Vec<usize>> = HashMap::new();
+        for triangle in (0..kept.len()).filter(|&triangle| !paired[triangle]) {
+            for side in 0..3 {
+                let edge = (corners[triangle][side], corners[triangle][(side + 1) % 3]);
+                by_edge.entry(edge).or_default().push(triangle);
+            }
+        }
+        Self { corners, by_edge }
+    }
+
+    fn of_triangle(&self, triangle: usize) -> impl Iterator<Item = usize> {
+        let corners = self.corners[triangle];
+        (0..3)
+            .filter_map(move |side| self.by_edge.get(&(corners[(side + 1) % 3], corners[side])))
+            .flat_map(|across| across.iter().take(NEIGHBOURS).copied())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(corners: Vec<[[f64; 3]; 3]>) -> Surfaces {
+        let corners = corners.into_iter().map(|triangle| triangle.map(DVec3::from_array)).collect();
+        surfaces(&Triangles { corners, rounded: true })
+    }
+
+    const A: [f64; 3] = [0.0, 0.0, 0.0];
+    const B: [f64; 3] = [2.0, 0.0, 0.0];
+    const C: [f64; 3] = [3.0, 1.0, 0.0];
+    const D: [f64; 3] = [1.0, 1.0, 0.0];
+
+    /// Each way of cutting and writing a parallelogram gives back its outline, from its first triangle's first corner.
+    #[test]
+    fn halves_of_a_parallelogram_become_one_quad() {
+        let rotated = |[p, q, r]: [[f64; 3]; 3], by: usize| {
+            let mut corners = [p, q, r];
+            corners.rotate_left(by);
+            corners
+        };
+        for halves in [[[A, B, C], [A, C, D]], [[A, B, D], [B, C, D]]] {
+            for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                let [first, second] = [rotated(halves[0], i), rotated(halves[1], j)];
+                let quads = of(vec![first, second]).corners;
+                let mut outline = [A, B, C, D];
+                let start =
+                    outline.iter().position(|&corner| corner == first[0]).expect("a corner of the outline");
+                outline.rotate_left(start);
+                assert_eq!(
+                    quads,
+                    [Corners::quad(outline.map(DVec3::from_array))],
+                    "{first:?} with {second:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_quad_stays_triangles() {
+        let (bent, askew, blunt) = ([1.0, 1.0, 0.01], [1.0, 1.5, 0.0], [1.5, 0.52, 0.0]);
+        let far = [[9.0, 0.0, 0.0], [9.0, 1.0, 0.0], [9.0, 0.0, 1.0]];
+        for (case, triangles, count) in [
+            ("a modelled quad", vec![[A, B, C], [A, C, askew]], 1),
+            ("bent", vec![[A, B, C], [A, C, bent]], 2),
+            ("almost a triangle", vec![[A, B, C], [A, C, blunt]], 2),
+            ("turned over", vec![[A, B, C], [A, D, C]], 2),
+            ("neighbours, not written as a pair", vec![far, [A, B, C], [A, C, askew]], 3),
+        ] {
+            assert_eq!(of(triangles).corners.len(), count, "{case}");
+        }
+    }
+
+    /// A strip of three squares whose triangles are written in pairs, but shifted by a lone triangle, and out of order.
+    #[test]
+    fn each_triangle_pairs_at_most_once_and_none_is_lost() {
+        let square = |x: f64| {
+            let [a, b, c, d] = [[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x + 1.0, 1.0, 0.0], [x, 1.0, 0.0]];
+            [[a, b, c], [a, c, d]]
+        };
+        let lone = [[9.0, 0.0, 0.0], [10.0, 0.0, 0.0], [9.0, 3.0, 0.0]];
+        let ([a, b], [c, d], [e, f]) = (square(0.0), square(1.0), square(2.0));
+        for triangles in [vec![lone, a, b, c, d, e, f], vec![a, c, e, lone, f, d, b]] {
+            let surfaces = of(triangles).corners;
+            let area: f64 = surfaces.iter().map(|corners| corners.double_area_vector().length() / 2.0).sum();
+            assert!(surfaces.len() < 7, "none of seven triangles found its partner");
+            assert!((area - 4.5).abs() < 1e-12, "area {area}, expected 3 squares and a triangle of 1.5");
+        }
+    }
+
+    #[test]
+    fn flat_and_repeated_faces_are_dropped_and_counted() {
+        let tenths = [[0.1_f32, 0.2, 0.3], [0.2, 0.4, 0.6], [0.7, 1.4, 2.1]].map(|p| p.map(f64::from));
+        let surfaces = of(vec![[A, B, C], [A, A, B], tenths, [B, C, A], [A, C, B]]);
+        assert_eq!(surfaces.corners.len(), 2, "a face and the same turned over");
+        assert_eq!(surfaces.dropped, Dropped { without_area: 2, duplicates: 1 });
+    }
+
+    #[test]
+    fn digits_lost_far_from_the_origin_are_noticed() {
+        let at = |x: f64| of(vec![[A, B, D].map(|[p, q, r]| [p + x, q, r])]).lost_digits;
+        assert_eq!(at(100.0), None);
+        assert_eq!(at(2e4), Some((2.0_f64.powi(-9), 2.0_f64.sqrt())));
+    }
+}

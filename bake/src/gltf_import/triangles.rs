@@ -1,0 +1,122 @@
+//! Primitives as triangles: in go a primitive's accessors, out come corner positions in the order of the file.
+//! Triangle lists, strips and fans, indexed or not; points and lines have no area and give nothing.
+
+use super::accessors::{check_type, components};
+use super::document::Document;
+use equilux_formats::Result;
+use glam::DVec3;
+use gltf::Primitive;
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::Mode;
+
+/// The triangles of one primitive.
+pub(super) struct Triangles {
+    /// Corners, counter-clockwise seen from the front, in mesh coordinates.
+    pub(super) corners: Vec<[DVec3; 3]>,
+    /// Whether positions were rounded to f32 on their way in.
+    pub(super) rounded: bool,
+}
+
+/// The triangles of `primitive`, or nothing where it has none by its kind. `mesh` names it in errors.
+pub(super) fn triangles(document: &Document, primitive: &Primitive, mesh: &str) -> Result<Option<Triangles>> {
+    let Some(corners_of) = assembly(primitive.mode()) else { return Ok(None) };
+    let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else { return Ok(None) };
+    let positions = positions(document, &accessor, mesh)?;
+    let order = match primitive.indices() {
+        Some(indices) => indexed(document, &indices, positions.len(), mesh)?,
+        None => (0..positions.len()).collect(),
+    };
+    if primitive.mode() == Mode::Triangles && order.len() % 3 != 0 {
+        return Err(document.error(
+            format!("mesh {mesh} with {} corners in a list of triangles", order.len()),
+            "a multiple of 3",
+            "export the file again, it is damaged",
+        ));
+    }
+    let corners = corners_of(order.len())
+        .map(|corners| corners.map(|corner| order[corner]))
+        .map(|vertices| finite(document, &accessor, mesh, &positions, vertices))
+        .collect::<Result<_>>()?;
+    Ok(Some(Triangles { corners, rounded: accessor.data_type() == DataType::F32 }))
+}
+
+type Assembly = fn(usize) -> Box<dyn Iterator<Item = [usize; 3]>>;
+
+/// Which of `n` corners make triangles (glTF 2.0 specification, §3.7.2.1); an odd triangle of a strip is turned over.
+fn assembly(mode: Mode) -> Option<Assembly> {
+    match mode {
+        Mode::Triangles => Some(|n| Box::new((0..n / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]))),
+        Mode::TriangleStrip => {
+            Some(|n| Box::new((0..n.saturating_sub(2)).map(|i| [i, i + 1 + i % 2, i + 2 - i % 2])))
+        }
+        Mode::TriangleFan => Some(|n| Box::new((1..n.saturating_sub(1)).map(|i| [i, i + 1, 0]))),
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => None,
+    }
+}
+
+fn positions(document: &Document, accessor: &gltf::Accessor, mesh: &str) -> Result<Vec<DVec3>> {
+    let what = format!("POSITION of mesh {mesh}");
+    let types = [DataType::F32, DataType::I8, DataType::U8, DataType::I16, DataType::U16];
+    check_type(document, accessor, &what, Dimensions::Vec3, &types)?;
+    Ok(components(document, accessor, &what)?.chunks_exact(3).map(DVec3::from_slice).collect())
+}
+
+fn indexed(
+    document: &Document,
+    accessor: &gltf::Accessor,
+    vertices: usize,
+    mesh: &str,
+) -> Result<Vec<usize>> {
+    let what = format!("indices of mesh {mesh}");
+    let types = [DataType::U8, DataType::U16, DataType::U32];
+    check_type(document, accessor, &what, Dimensions::Scalar, &types)?;
+    let indices: Vec<usize> =
+        components(document, accessor, &what)?.into_iter().map(|index| index as usize).collect();
+    match indices.iter().find(|&&index| index >= vertices) {
+        None => Ok(indices),
+        Some(index) => Err(document.error(
+            format!("{what} in accessor {} with the index {index}", accessor.index()),
+            format!("an index below {vertices}, its number of vertices"),
+            "export the file again, it contradicts itself",
+        )),
+    }
+}
+
+fn finite(
+    document: &Document,
+    accessor: &gltf::Accessor,
+    mesh: &str,
+    positions: &[DVec3],
+    vertices: [usize; 3],
+) -> Result<[DVec3; 3]> {
+    match vertices.into_iter().find(|&vertex| !positions[vertex].is_finite()) {
+        None => Ok(vertices.map(|vertex| positions[vertex])),
+        Some(vertex) => Err(document.error(
+            format!(
+                "POSITION of mesh {mesh} in accessor {} with vertex {vertex} at {}",
+                accessor.index(),
+                positions[vertex]
+            ),
+            "finite coordinates",
+            "correct the mesh, it holds NaN or infinite positions",
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_and_fans_keep_their_winding() {
+        let of = |mode, n| assembly(mode).expect("has triangles")(n).collect::<Vec<_>>();
+        assert_eq!(of(Mode::TriangleStrip, 5), [[0, 1, 2], [1, 3, 2], [2, 3, 4]]);
+        assert_eq!(of(Mode::TriangleFan, 4), [[1, 2, 0], [2, 3, 0]]);
+        for mode in [Mode::Triangles, Mode::TriangleStrip, Mode::TriangleFan] {
+            assert!(
+                (0..3).all(|n| of(mode, n).is_empty()),
+                "{mode:?} of fewer than three corners has triangles"
+            );
+        }
+    }
+}
