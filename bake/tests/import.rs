@@ -1,5 +1,8 @@
 //! The importer's contract, on small files written here: what each feature of glTF becomes, what is left out with a
 //! note, and what is refused. Coordinates are small dyadic numbers, so equality is exact unless a tolerance says why not.
+//!
+//! Long because it is one set of tables over one writer of glTF files: containers, hierarchy, surfaces, materials,
+//! lights, extras, refusals.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
