@@ -1,1 +1,25 @@
-//! assemble
+//! Parts in their places → who interacts → coupling blocks → exchange until equilibrium → pictures and a report.
+//!
+//! What comes in is a scene's file and a cache of baked parts; what goes out is a [`report::Report`] and the files it
+//! names.
+
+mod account;
+pub mod camera;
+pub mod canvas;
+pub mod classic;
+#[cfg(feature = "cli")]
+pub mod cli;
+pub mod coupling;
+pub mod elements_csv;
+pub mod exchange;
+pub mod exposure;
+pub mod gltf_export;
+pub mod hull;
+pub mod output_file;
+mod outputs;
+pub mod picture;
+pub mod placed;
+pub mod report;
+pub mod run;
+pub mod scene_light;
+mod steps;

@@ -1,2 +1,5 @@
-//! The `bake` program.
-fn main() {}
+//! The `assemble` program.
+
+fn main() -> std::process::ExitCode {
+    equilux_assemble::cli::main()
+}

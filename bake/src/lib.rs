@@ -3,8 +3,11 @@
 //! What comes in is a file; what goes out is a [`equilux_formats::BakedPart`] for each part in it. The form-factor code
 //! lives here because `assemble` couples parts with the same.
 
+pub mod batch;
 pub mod bisect;
 pub mod cached;
+#[cfg(feature = "cli")]
+pub mod cli;
 pub mod elements;
 pub mod equilibrium;
 pub mod form_factor;

@@ -1,2 +1,5 @@
 //! The `bake` program.
-fn main() {}
+
+fn main() -> std::process::ExitCode {
+    equilux_bake::cli::main()
+}

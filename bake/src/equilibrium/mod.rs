@@ -11,7 +11,7 @@ pub mod krylov;
 mod progressive;
 
 use equilux_formats::{Factors, LocalSolver, Rgb, Rows};
-use std::cell::OnceCell;
+use std::sync::OnceLock;
 
 /// Up to this many elements the direct solver is chosen when nobody chooses: its n³/3 then costs less than a second,
 /// once, and every later solve n².
@@ -31,7 +31,7 @@ pub struct LocalSystem<'a> {
     reflectance: &'a [Rgb],
     solver: LocalSolver,
     factors: Option<&'a Factors>,
-    columns: OnceCell<progressive::Columns>,
+    columns: OnceLock<progressive::Columns>,
 }
 
 impl<'a> LocalSystem<'a> {
@@ -44,7 +44,7 @@ impl<'a> LocalSystem<'a> {
     ) -> Self {
         assert_eq!(block.receivers(), block.senders(), "a part's own block is square");
         assert_eq!(block.receivers(), reflectance.len(), "one reflectance an element");
-        Self { block, reflectance, solver, factors, columns: OnceCell::new() }
+        Self { block, reflectance, solver, factors, columns: OnceLock::new() }
     }
 
     /// The radiosity B that solves (I − ρF) B = `sources`, starting from `guess`; both W/m², one row an element.

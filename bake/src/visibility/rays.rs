@@ -14,8 +14,6 @@ pub struct RayIndex<'a> {
     elements: &'a [Element],
     bvh: Option<Bvh2>,
     centre: DVec3,
-    /// f32 needs numbers near one: scene lengths are divided by this.
-    scale: f64,
 }
 
 /// What a ray meets.
@@ -34,15 +32,25 @@ impl<'a> RayIndex<'a> {
     pub fn new(elements: &'a [Element]) -> Self {
         let corners = elements.iter().flat_map(|e| e.corners.as_slice().iter().copied());
         let (centre, padding) = frame(corners);
+        // Rays also come from eyes a few extents away, and their slab tests round as far as they travel.
+        let padding = 8.0 * padding;
         let boxes: Vec<Box3> =
             elements.iter().map(|e| Box3(bounds(e.corners.as_slice(), centre, padding))).collect();
-        let scale = (f64::from(padding) / (4.0 * f64::from(f32::EPSILON))).max(f64::MIN_POSITIVE);
-        Self { elements, bvh: build(&boxes), centre, scale }
+        Self { elements, bvh: build(&boxes), centre }
     }
 
     /// The nearest hit beyond distance 0 along `direction` from `origin`. Of two elements back to back the one that
     /// shows its front is met.
     pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        self.nearest(origin, direction, |_| true)
+    }
+
+    /// The nearest hit beyond distance 0 on a front; backs are transparent.
+    pub fn first_front(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        self.nearest(origin, direction, |hit| hit.front)
+    }
+
+    fn nearest(&self, origin: DVec3, direction: DVec3, counts: impl Fn(&Hit) -> bool) -> Option<Hit> {
         let bvh = self.bvh.as_ref()?;
         let mut nearest: Option<Hit> = None;
         let ray = Ray::new_inf((origin - self.centre).as_vec3a(), direction.as_vec3a());
@@ -50,6 +58,7 @@ impl<'a> RayIndex<'a> {
         bvh.ray_traverse(ray, &mut RayHit::none(), |_, slot| {
             let element = bvh.primitive_indices[slot] as usize;
             if let Some(hit) = self.intersect(element, origin, direction)
+                && counts(&hit)
                 && nearest.is_none_or(|n| closer(&hit, &n))
             {
                 nearest = Some(hit);
@@ -65,11 +74,6 @@ impl<'a> RayIndex<'a> {
         let direction = to - from;
         let start = from + direction * 1e-9;
         self.first_hit(start, direction).is_none_or(|hit| hit.distance >= 1.0 - 2e-9)
-    }
-
-    /// The largest extent of the indexed elements, metres.
-    pub fn extent(&self) -> f64 {
-        self.scale
     }
 
     fn intersect(&self, index: usize, origin: DVec3, direction: DVec3) -> Option<Hit> {
@@ -92,4 +96,77 @@ impl<'a> RayIndex<'a> {
 fn closer(hit: &Hit, than: &Hit) -> bool {
     let tie = (hit.distance - than.distance).abs() <= 1e-9 * than.distance;
     if tie { hit.front && !than.front } else { hit.distance < than.distance }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use equilux_formats::{Corners, FaceId, MaterialId};
+    use proptest::prelude::*;
+
+    /// A quad at `corner` that spans `u` and `v`, its front towards u × v.
+    fn quad(corner: DVec3, u: DVec3, v: DVec3) -> Element {
+        let corners = Corners::quad([corner, corner + u, corner + u + v, corner + v]);
+        Element::new(corners, MaterialId(0), FaceId(0))
+    }
+
+    /// The unit cube seen from inside, each side in 4 × 4 elements whose edges are shared bit for bit.
+    fn room() -> Vec<Element> {
+        let mut elements = vec![];
+        for axis in 0..3 {
+            let (u, v) = (DVec3::AXES[(axis + 1) % 3] / 4.0, DVec3::AXES[(axis + 2) % 3] / 4.0);
+            for (i, j) in (0..16).map(|cell| (f64::from(cell % 4), f64::from(cell / 4))) {
+                elements.push(quad(u * i + v * j, u, v));
+                elements.push(quad(u * i + v * j + DVec3::AXES[axis], v, u));
+            }
+        }
+        elements
+    }
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        (0.0..1.0, 0.0..1.0, 0.0..1.0).prop_map(|(x, y, z)| DVec3::new(x, y, z))
+    }
+
+    proptest! {
+        #[test]
+        fn the_first_hit_is_the_nearest_of_all(from in point(), to in point()) {
+            let elements = room();
+            let index = RayIndex::new(&elements);
+            let (origin, direction) = (from * 5.0 - 2.0, to - (from * 5.0 - 2.0));
+            let all = || (0..elements.len()).filter_map(|e| index.intersect(e, origin, direction));
+            let nearest = all().map(|hit| hit.distance).reduce(f64::min);
+            let nearest_front = all().filter(|hit| hit.front).map(|hit| hit.distance).reduce(f64::min);
+            // The ray aims at the inside of a closed room, so it meets something, and a front at the latest as it leaves.
+            prop_assert!(nearest_front.is_some());
+            let found = |hit: Option<Hit>| hit.map(|hit| hit.distance);
+            // Distances within 1e-9 of each other are ties.
+            let same = |a: Option<f64>, b: Option<f64>| (a.unwrap() - b.unwrap()).abs() <= 1e-9 * b.unwrap();
+            prop_assert!(same(found(index.first_hit(origin, direction)), nearest));
+            prop_assert!(same(found(index.first_front(origin, direction)), nearest_front));
+        }
+
+        #[test]
+        fn no_ray_slips_out_through_a_shared_edge(from in point(), element in 0usize..96, along in 0..4) {
+            let elements = room();
+            let corners = elements[element].corners;
+            let (a, b) = (corners.as_slice()[0], corners.as_slice()[1]);
+            let target = a + (b - a) * f64::from(along) / 3.0;
+            prop_assert!(RayIndex::new(&elements).first_hit(from, target - from).is_some());
+        }
+    }
+
+    #[test]
+    fn a_front_hides_and_a_back_does_not_count_as_a_front() {
+        let sheet = |z: f64| quad(DVec3::new(0.0, 0.0, z), DVec3::X, DVec3::Y);
+        let elements = [sheet(0.0), sheet(1.0)];
+        let index = RayIndex::new(&elements);
+        let (low, high) = (DVec3::new(0.4, 0.3, -1.0), DVec3::new(0.4, 0.3, 2.0));
+        let from_front = index.first_hit(high, DVec3::NEG_Z).unwrap();
+        assert_eq!((from_front.element, from_front.distance, from_front.front), (1, 1.0, true));
+        let from_behind = index.first_hit(low, DVec3::Z).unwrap();
+        assert_eq!((from_behind.element, from_behind.distance, from_behind.front), (0, 1.0, false));
+        assert_eq!(index.first_front(low, DVec3::Z), None);
+        assert!(!index.sees(low, high));
+        assert!(index.sees(DVec3::new(0.4, 0.3, 0.0), DVec3::new(0.4, 0.3, 1.0)), "the ends do not count");
+    }
 }

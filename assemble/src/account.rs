@@ -1,0 +1,58 @@
+//! Sums over the whole scene: energy, row sums, memory, and light that never ends.
+
+use crate::exchange::Node;
+use crate::placed::Placed;
+use crate::report::{Defect, Energy};
+use equilux_bake::equilibrium::endless::endless_light;
+use equilux_formats::{Error, Optics, Result, Rgb};
+use std::path::Path;
+
+/// The energy account of a state.
+pub fn energy(placed: &Placed, optics: &Optics, radiosity: &[Rgb], irradiance: &[Rgb]) -> Energy {
+    let mut account = Energy::default();
+    for (i, element) in placed.world.elements.iter().enumerate() {
+        for c in 0..3 {
+            let absorbed = (1.0 - optics.reflectance[i][c]) * irradiance[i][c];
+            account.emitted[c] += element.area * optics.emission[i][c];
+            account.absorbed[c] += element.area * absorbed;
+            account.escaped[c] += element.area * (radiosity[i][c] - irradiance[i][c]);
+        }
+    }
+    account
+}
+
+/// How far the rows of the whole matrix are from summing to one.
+pub fn row_sum_defect(nodes: &[Node]) -> Defect {
+    let defects: Vec<f64> = nodes
+        .iter()
+        .flat_map(|node| {
+            let rows = 0..node.self_block.receivers();
+            rows.map(|i| (node.self_block.row_sum(i) + node.coupling.row_sum(i) - 1.0).abs())
+        })
+        .collect();
+    let max = defects.iter().copied().fold(0.0, f64::max);
+    Defect { max, mean: defects.iter().sum::<f64>() / defects.len().max(1) as f64 }
+}
+
+/// Refuse a scene in which some group of elements keeps all its light for ever and gets more.
+pub fn refuse_endless_light(placed: &Placed, nodes: &[Node], optics: &Optics, file: &Path) -> Result<()> {
+    let place: Vec<(usize, usize)> =
+        nodes.iter().enumerate().flat_map(|(k, n)| (0..n.self_block.receivers()).map(move |i| (k, i))).collect();
+    let rows = |element: usize| {
+        let (k, i) = place[element];
+        let first = placed.world.elements_of(k).start;
+        let own = nodes[k].self_block.row(i).map(move |(j, f)| (j + first, f));
+        own.chain(nodes[k].coupling.row(i))
+    };
+    let Some(element) = endless_light(optics, rows) else { return Ok(()) };
+    let instance = &placed.instances[place[element].0];
+    Err(Error::new(
+        file,
+        format!(
+            "around `{}` the scene is closed, reflects everything and emits: its light grows without end",
+            instance.name
+        ),
+        "a reflectance below 1 or an opening somewhere",
+        "lower a base colour below 1, or switch the emission off",
+    ))
+}

@@ -1,0 +1,170 @@
+//! Where a picture is taken from. In go the file's cameras or, without any, the placed elements; out comes a [`View`],
+//! which turns image points into rays and scene points into image points.
+//!
+//! Without a camera the scene is framed from outside. A surface is transparent from behind, so a closed room is seen
+//! through the backs of its near walls; of several directions the one that shows most of the surfaces' fronts is taken.
+
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_formats::{Camera, Element};
+use glam::{DVec2, DVec3};
+use std::f64::consts::PI;
+
+/// Height of a picture, pixels.
+const HEIGHT: u32 = 720;
+/// Width over height where no camera says otherwise.
+const ASPECT: f64 = 4.0 / 3.0;
+/// Pictures are no longer than this many times their height, nor their inverse.
+const LONGEST: f64 = 4.0;
+/// Vertical field of view of a framing camera, radians.
+const FRAMING_FOV: f64 = 40.0 / 180.0 * PI;
+/// Part of the picture that a framed scene fills.
+const FILLED: f64 = 0.94;
+/// Elements that a framing camera looks at to judge a direction.
+const JUDGED: usize = 2000;
+
+/// A perspective camera and the size of its picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct View {
+    /// The eye, metres.
+    pub position: DVec3,
+    /// Unit vector to the right of the picture.
+    pub right: DVec3,
+    /// Unit vector up in the picture.
+    pub up: DVec3,
+    /// Unit vector against the direction of sight.
+    pub back: DVec3,
+    /// Vertical field of view, radians.
+    pub vertical_fov: f64,
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+}
+
+impl View {
+    /// The view of the first camera, else one that frames all elements (those of `index`, at least one).
+    pub fn of_scene(cameras: &[Camera], elements: &[Element], index: &RayIndex) -> Self {
+        cameras.first().map_or_else(|| Self::framing(elements, index), Self::of_camera)
+    }
+
+    /// What `camera` sees. Its placement must not scale.
+    pub fn of_camera(camera: &Camera) -> Self {
+        let axes = camera.placement.matrix3;
+        Self {
+            position: camera.placement.translation,
+            right: axes.x_axis,
+            up: axes.y_axis,
+            back: axes.z_axis,
+            vertical_fov: camera.vertical_fov,
+            width: width(camera.aspect.unwrap_or(ASPECT)),
+            height: HEIGHT,
+        }
+    }
+
+    /// The view from outside, on all `elements` (those of `index`, at least one), that shows most of their fronts.
+    pub fn framing(elements: &[Element], index: &RayIndex) -> Self {
+        let corners = box_corners(elements);
+        let judged = |back| {
+            let view = Self::fitted(back, &corners);
+            (view.shown(elements, index), view)
+        };
+        let better = |best: (f64, Self), next: (f64, Self)| if next.0 > best.0 { next } else { best };
+        directions().map(judged).reduce(better).expect("there are directions").1
+    }
+
+    /// The ray through an image point, pixels from the top left; its length is chosen so that one unit of it is one
+    /// metre of depth.
+    pub fn ray(&self, point: DVec2) -> DVec3 {
+        let offset = (point - self.centre()) / self.focal_length();
+        self.right * offset.x - self.up * offset.y - self.back
+    }
+
+    /// The image point of a scene point as (x, y, 1) × depth: pixels from the top left, metres. Points behind the eye
+    /// have a negative depth, so that lines through them are still right.
+    pub fn project(&self, point: DVec3) -> DVec3 {
+        let from_eye = point - self.position;
+        let depth = -from_eye.dot(self.back);
+        let offset = DVec2::new(from_eye.dot(self.right), -from_eye.dot(self.up)) * self.focal_length();
+        (self.centre() * depth + offset).extend(depth)
+    }
+
+    fn centre(&self) -> DVec2 {
+        DVec2::new(self.width.into(), self.height.into()) / 2.0
+    }
+
+    /// Distance of the image plane from the eye, pixels.
+    fn focal_length(&self) -> f64 {
+        f64::from(self.height) / 2.0 / (self.vertical_fov / 2.0).tan()
+    }
+
+    /// The nearest view along −`back` that has all `points` in the picture.
+    fn fitted(back: DVec3, points: &[DVec3]) -> Self {
+        let right = DVec3::Y.cross(back).normalize();
+        let up = back.cross(right);
+        let slope = (FRAMING_FOV / 2.0).tan() * FILLED;
+        let (x, far_x) = fit(points.iter().map(|p| (p.dot(right), p.dot(back))), slope * ASPECT);
+        let (y, far_y) = fit(points.iter().map(|p| (p.dot(up), p.dot(back))), slope);
+        Self {
+            position: right * x + up * y + back * far_x.max(far_y),
+            right,
+            up,
+            back,
+            vertical_fov: FRAMING_FOV,
+            width: width(ASPECT),
+            height: HEIGHT,
+        }
+    }
+
+    /// Area of the elements whose centroid is seen from the front, foreshortened by the angle they are seen at. Of
+    /// many elements every so-manieth is taken.
+    fn shown(&self, elements: &[Element], index: &RayIndex) -> f64 {
+        let seen = |&(i, element): &(usize, &Element)| {
+            let sight = element.centroid - self.position;
+            index.first_front(self.position, sight).is_some_and(|hit| hit.element == i)
+        };
+        let foreshortened = |element: &Element| {
+            element.area * element.normal.dot((self.position - element.centroid).normalize())
+        };
+        let judged = elements.iter().enumerate().step_by(elements.len() / JUDGED + 1);
+        judged.filter(seen).map(|(_, element)| foreshortened(element)).sum()
+    }
+}
+
+fn width(aspect: f64) -> u32 {
+    (f64::from(HEIGHT) * aspect.clamp(1.0 / LONGEST, LONGEST)).round() as u32
+}
+
+/// Where an eye must stand to see all `(across, towards)` points within `slope` on either side of its axis: across, and
+/// how far back. The points that touch the edges of the picture bound it from both sides.
+fn fit(points: impl Iterator<Item = (f64, f64)>, slope: f64) -> (f64, f64) {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (across, towards) in points {
+        low = low.min(across - towards * slope);
+        high = high.max(across + towards * slope);
+    }
+    ((low + high) / 2.0, (high - low) / 2.0 / slope)
+}
+
+/// The eight corners of the box around all elements.
+fn box_corners(elements: &[Element]) -> [DVec3; 8] {
+    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    for &corner in elements.iter().flat_map(|element| element.corners.as_slice()) {
+        (low, high) = (low.min(corner), high.max(corner));
+    }
+    std::array::from_fn(|i| {
+        let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        DVec3::new(pick(0), pick(1), pick(2))
+    })
+}
+
+/// Unit vectors towards the eyes that are tried: around the scene, level and from above. The front of a glTF scene,
+/// +Z, comes first and so wins ties.
+fn directions() -> impl Iterator<Item = DVec3> {
+    let around = (0..12).map(|i| f64::from(i) * PI / 6.0);
+    around.flat_map(|azimuth| {
+        [0.0, 15.0, 30.0].map(|degrees: f64| {
+            let elevation = degrees.to_radians();
+            DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos())
+        })
+    })
+}

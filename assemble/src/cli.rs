@@ -1,0 +1,106 @@
+//! The command line of `assemble`.
+
+use crate::exchange::{Goal, Method};
+use crate::run::{Job, run};
+use clap::{Parser, ValueEnum};
+use equilux_bake::cli::{options::SceneOptions, progress};
+use equilux_bake::monitor::Monitor;
+use crate::report::Report;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// Assemble a scene from baked parts, let them exchange light until equilibrium, and write pictures and a report.
+#[derive(Parser)]
+#[command(name = "assemble", version, after_help = EXAMPLES)]
+struct Arguments {
+    /// The scene, a .gltf or .glb file
+    scene: PathBuf,
+    #[command(flatten)]
+    options: SceneOptions,
+    /// Folder for the outputs; they go to DIR/<scene>/
+    #[arg(long, value_name = "DIR", default_value = "out")]
+    out: PathBuf,
+    /// In which order parts hear of each other
+    #[arg(long, value_name = "METHOD", default_value = "jacobi")]
+    exchange: Exchange,
+    /// At most this many rounds
+    #[arg(long, value_name = "N")]
+    rounds: Option<usize>,
+    /// Stop when this error is proved, relative to the brightest radiosity [default: 1e-6, with --verify 1e-12]
+    #[arg(long, value_name = "BOUND", value_parser = error_bound)]
+    error: Option<f64>,
+    /// Also solve the classic whole-scene matrix and print the largest difference
+    #[arg(long)]
+    verify: bool,
+    /// Write a table of all elements, their optics and their light
+    #[arg(long, value_name = "FILE.csv")]
+    elements: Option<PathBuf>,
+}
+
+/// The exchange's name on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Exchange {
+    /// All parts at once, as the paper does
+    Jacobi,
+    /// One part after the other, with the newest light
+    GaussSeidel,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  assemble scenes/shadow/shadow.glb                    pictures of every round in out/shadow/
+  assemble scenes/house/house.gltf --element-size 0.3  a level from part files
+  assemble scenes/wood/wood.glb --bisect 8 --verify    parts by planes, compared with the whole
+Ctrl-C ends the exchange after the current round; everything is still written.";
+
+/// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
+pub fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let monitor = progress::monitor_for_program();
+    let progress = progress::show(&monitor);
+    let outcome = assemble(&arguments, &monitor);
+    progress.finish();
+    match outcome {
+        Ok(report) if arguments.options.json => {
+            println!("{}", serde_json::to_string(&report).expect("a report is plain data"));
+            ExitCode::SUCCESS
+        }
+        Ok(report) => {
+            print!("{}", report.text());
+            ExitCode::SUCCESS
+        }
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn assemble(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Report> {
+    arguments.options.set_threads()?;
+    let default_error = if arguments.verify { 1e-12 } else { 1e-6 };
+    let job = Job {
+        scene: arguments.scene.clone(),
+        cache: arguments.options.cache.clone(),
+        out: arguments.out.clone(),
+        preparation: arguments.options.preparation(),
+        method: match arguments.exchange {
+            Exchange::Jacobi => Method::Jacobi,
+            Exchange::GaussSeidel => Method::GaussSeidel,
+        },
+        goal: Goal {
+            error: arguments.error.unwrap_or(default_error),
+            rounds: arguments.rounds.unwrap_or(usize::MAX),
+        },
+        verify: arguments.verify,
+        elements: arguments.elements.clone(),
+    };
+    Ok(run(&job, monitor)?)
+}
+
+fn error_bound(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(error) if error >= 0.0 => Ok(error),
+        _ => Err("an error bound is a number, zero or more".into()),
+    }
+}

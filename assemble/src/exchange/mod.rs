@@ -1,0 +1,146 @@
+//! Parts exchange light until the whole is in equilibrium: steps 5–8 of the paper, round after round.
+//!
+//! B_k ← (I − ρF_kk)⁻¹ (E_k + ρ Σ_{l≠k} F_kl B_l). Debelov & Sevastyanov, §2.2.
+
+pub mod bound;
+mod sweep;
+
+use crate::coupling::Coupled;
+use crate::placed::Placed;
+use bound::{Margin, residual};
+use equilux_bake::equilibrium::{LocalSystem, added, largest, scaled};
+use equilux_bake::monitor::Monitor;
+use equilux_formats::{Optics, Rgb, Rows};
+use std::time::{Duration, Instant};
+
+/// In which order parts hear of each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// All parts at once, each with what the others had a round ago: the paper's form.
+    Jacobi,
+    /// One part after the other, each with the newest of the others.
+    GaussSeidel,
+}
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// The error bound asked for, relative to the brightest radiosity.
+    pub error: f64,
+    /// At most this many rounds.
+    pub rounds: usize,
+}
+
+/// One instance's share of the equation.
+pub struct Node<'a> {
+    /// Reflectance and emission in this place.
+    pub optics: Optics,
+    /// F_kk in the scene.
+    pub self_block: &'a Rows,
+    /// F_kl for l ≠ k; columns count through all elements.
+    pub coupling: &'a Rows,
+    /// Solves the instance on its own.
+    pub local: LocalSystem<'a>,
+}
+
+/// What a round left behind.
+#[derive(Debug, Clone)]
+pub struct Round {
+    /// 1 for the first.
+    pub number: usize,
+    /// Largest residual, W/m².
+    pub residual: f64,
+    /// No radiosity is further than this from the exact solution, W/m².
+    pub error_bound: f64,
+    /// The bound over the brightest radiosity.
+    pub relative_bound: f64,
+    /// Wall time of the round.
+    pub time: Duration,
+    /// Radiosity of all elements after the round, for the pictures.
+    pub radiosity: Vec<Rgb>,
+}
+
+/// Time spent in the paper's steps 5 and 6 (local solves) and 7 and 8 (transfers), one entry an instance.
+#[derive(Debug, Clone, Default)]
+pub struct StepTimes {
+    /// Equilibrium inside each instance.
+    pub solve: Vec<Duration>,
+    /// Transfer into each instance.
+    pub transfer: Vec<Duration>,
+}
+
+/// The light in the end.
+pub struct Outcome {
+    /// Radiosity of all elements.
+    pub radiosity: Vec<Rgb>,
+    /// Irradiance of all elements.
+    pub irradiance: Vec<Rgb>,
+    /// The rounds.
+    pub rounds: Vec<Round>,
+    /// Where time went.
+    pub times: StepTimes,
+    /// Whether the goal was met.
+    pub converged: bool,
+}
+
+/// A round that lowers the bound by less than this share, at rounding level, is the last.
+const STALLED: f64 = 0.95;
+
+/// The instances' shares of the equation.
+pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics]) -> Vec<Node<'a>> {
+    (0..coupled.len())
+        .map(|k| {
+            let part = &placed.part_of(k).part;
+            let self_block = coupled[k].self_block(&part.self_block);
+            let factors = coupled[k].factors(&part.local);
+            let local = LocalSystem::new(self_block, &optics[k].reflectance, part.local.solver, factors);
+            Node { optics: optics[k].clone(), self_block, coupling: &coupled[k].coupling, local }
+        })
+        .collect()
+}
+
+/// Exchange light until the goal is met, no progress is possible, or somebody stops it. Starts from darkness, as the
+/// paper does.
+pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -> Outcome {
+    let margin = Margin::of(nodes);
+    let mut state = sweep::State::dark(nodes);
+    let mut rounds: Vec<Round> = Vec::new();
+    let mut times = StepTimes { solve: vec![Duration::ZERO; nodes.len()], transfer: vec![Duration::ZERO; nodes.len()] };
+    let mut converged = false;
+    monitor.begin("exchange", 0);
+    while rounds.len() < goal.rounds && !converged && !monitor.stopped() {
+        let start = Instant::now();
+        match method {
+            Method::Jacobi => state.jacobi(nodes, &mut times),
+            Method::GaussSeidel => state.gauss_seidel(nodes, &mut times),
+        }
+        let irradiance = state.irradiance(nodes);
+        let residual = residual(nodes, &state.radiosity, &irradiance);
+        let error_bound = margin.bound(&residual);
+        let brightest = largest(&state.flat()).into_iter().fold(0.0, f64::max);
+        let relative_bound = if error_bound == 0.0 { 0.0 } else { error_bound / brightest };
+        converged = relative_bound <= goal.error;
+        let stalled = relative_bound < 1e-9
+            && rounds.last().is_some_and(|last| relative_bound > STALLED * last.relative_bound);
+        rounds.push(Round {
+            number: rounds.len() + 1,
+            residual: residual.iter().flatten().flatten().fold(0.0, |most: f64, r| most.max(r.abs())),
+            error_bound,
+            relative_bound,
+            time: start.elapsed(),
+            radiosity: state.flat(),
+        });
+        monitor.advance(1);
+        if stalled {
+            break;
+        }
+    }
+    let irradiance = state.irradiance(nodes).concat();
+    Outcome { radiosity: state.flat(), irradiance, rounds, times, converged }
+}
+
+/// E + ρ × irradiance.
+fn sources(optics: &Optics, arriving: &[Rgb]) -> Vec<Rgb> {
+    let reflected = optics.reflectance.iter().zip(arriving).map(|(&rho, &h)| scaled(rho, h));
+    optics.emission.iter().zip(reflected).map(|(&e, r)| added(e, r)).collect()
+}

@@ -1,0 +1,63 @@
+//! Whether foreign geometry stands inside a part's hull, where it could come between two of the part's own points.
+//!
+//! The hull is bounded by pairs of parallel planes in thirteen directions (Klosowski et al. 1998, 26-DOP). It contains
+//! the convex hull, so an intruder is never missed; the cells of a bisection touch it only from outside.
+
+use equilux_bake::form_factor::polygon::{Side, clip};
+use equilux_bake::planes::FLATNESS;
+use equilux_formats::{Face, Geometry};
+use glam::{DAffine3, DVec3, dvec3};
+
+/// A convex region around a part, in the part's coordinates.
+pub struct Hull {
+    slabs: Vec<(DVec3, f64, f64)>,
+}
+
+impl Hull {
+    /// The hull of a part's faces, drawn in by the tolerance within which faces count as lying in one plane.
+    pub fn around(geometry: &Geometry) -> Self {
+        let corners = || geometry.faces.iter().flat_map(|face| &face.corners);
+        let tolerance = FLATNESS * corners().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let slab = |direction: DVec3| {
+            let along = corners().map(|p| p.dot(direction));
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
+            (direction, low + tolerance, high - tolerance)
+        };
+        Self { slabs: directions().map(slab).to_vec() }
+    }
+
+    /// Whether any of `face`, which `to_part` brings into the part's coordinates, lies inside.
+    pub fn holds(&self, face: &Face, to_part: DAffine3) -> bool {
+        let mut rest: Vec<DVec3> = face.corners.iter().map(|&p| to_part.transform_point3(p)).collect();
+        for &(direction, low, high) in &self.slabs {
+            for (sign, limit) in [(1.0, low), (-1.0, -high)] {
+                match clip(&rest, |p| sign * p.dot(direction) - limit) {
+                    Side::All => {}
+                    Side::None => return false,
+                    Side::Piece(piece) => rest = piece.to_vec(),
+                }
+            }
+        }
+        true
+    }
+}
+
+/// Axes, face diagonals and space diagonals of a cube, unit length.
+fn directions() -> [DVec3; 13] {
+    [
+        dvec3(1., 0., 0.),
+        dvec3(0., 1., 0.),
+        dvec3(0., 0., 1.),
+        dvec3(1., 1., 0.),
+        dvec3(1., -1., 0.),
+        dvec3(1., 0., 1.),
+        dvec3(1., 0., -1.),
+        dvec3(0., 1., 1.),
+        dvec3(0., 1., -1.),
+        dvec3(1., 1., 1.),
+        dvec3(1., 1., -1.),
+        dvec3(1., -1., 1.),
+        dvec3(-1., 1., 1.),
+    ]
+    .map(DVec3::normalize)
+}

@@ -1,0 +1,106 @@
+//! Everything a run leaves in `out/<scene>/`: a picture of every round, of the end, of the elements, and the result as
+//! glTF.
+
+use crate::camera::View;
+use crate::canvas::Canvas;
+use crate::classic::Classic;
+use crate::exchange::Outcome;
+use crate::exposure::Exposure;
+use crate::picture::{shade, wireframe, write_png};
+use crate::placed::Placed;
+use crate::run::Job;
+use crate::scene_light::SceneLight;
+use crate::{elements_csv, gltf_export};
+use equilux_bake::monitor::Monitor;
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_formats::{Error, Optics, Result, Rgb, Scene};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+
+/// What there is to show.
+pub struct Light<'a> {
+    /// The parts in their places.
+    pub placed: &'a Placed,
+    /// Optics of all elements.
+    pub optics: &'a Optics,
+    /// The exchange.
+    pub outcome: &'a Outcome,
+    /// The classic solution, if asked for.
+    pub classic: Option<&'a Classic>,
+}
+
+/// Write all outputs; returns the paths written, for a person.
+pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> Result<Vec<String>> {
+    let folder = job.out.join(&scene.name);
+    prepare_folder(&folder)?;
+    let elements = &light.placed.world.elements;
+    let index = RayIndex::new(elements);
+    let canvas = Canvas::trace(View::of_scene(&scene.cameras, elements, &index), &index);
+    let exposure = Exposure::choose(&canvas, &light.outcome.radiosity, &light.optics.emission);
+    let draw = |name: &str, radiosity: &[Rgb]| {
+        let path = folder.join(name);
+        write_png(&path, &shade(&canvas, radiosity, exposure)).map(|()| path)
+    };
+
+    let rounds = &light.outcome.rounds;
+    monitor.begin("pictures", rounds.len());
+    rounds.par_iter().try_for_each(|round| {
+        draw(&format!("round-{:03}.png", round.number), &round.radiosity)?;
+        monitor.advance(1);
+        Ok(())
+    })?;
+    let mut written: Vec<PathBuf> = vec![draw("final.png", &light.outcome.radiosity)?];
+    if let Some(classic) = light.classic {
+        written.push(draw("classic.png", &classic.radiosity)?);
+    }
+    let edges = folder.join("wireframe.png");
+    write_png(&edges, &wireframe(&canvas, elements))?;
+    written.push(edges);
+    written.extend(write_tables(job, &folder, light, exposure)?);
+    let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    if !rounds.is_empty() {
+        lines.insert(0, format!("{} to round-{:03}.png", folder.join("round-001.png").display(), rounds.len()));
+    }
+    Ok(lines)
+}
+
+fn write_tables(job: &Job, folder: &Path, light: &Light, exposure: Exposure) -> Result<Vec<PathBuf>> {
+    let placed = light.placed;
+    let part_names: Vec<String> =
+        (0..placed.instances.len()).map(|k| placed.part_of(k).part.name.clone()).collect();
+    let instance_names: Vec<String> = placed.instances.iter().map(|i| i.name.clone()).collect();
+    let scene_light = SceneLight {
+        world: &placed.world,
+        reflectance: &light.optics.reflectance,
+        emission: &light.optics.emission,
+        irradiance: &light.outcome.irradiance,
+        radiosity: &light.outcome.radiosity,
+        part_names: &part_names,
+        instance_names: &instance_names,
+    };
+    let result = folder.join("result.glb");
+    gltf_export::write(&result, &scene_light, exposure)?;
+    let mut written = vec![result];
+    if let Some(path) = &job.elements {
+        elements_csv::write(path, &scene_light)?;
+        written.push(path.clone());
+    }
+    Ok(written)
+}
+
+/// Make the folder, and take away the rounds of an earlier run, which may have had more of them.
+fn prepare_folder(folder: &Path) -> Result<()> {
+    let failed = |error: std::io::Error| {
+        Error::new(folder, error.to_string(), "a folder that can be written", "choose another with --out DIR")
+    };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    for entry in std::fs::read_dir(folder).map_err(failed)?.flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let number = name.strip_prefix("round-").and_then(|rest| rest.strip_suffix(".png"));
+        if number.is_some_and(|number| number.len() >= 3 && number.bytes().all(|b| b.is_ascii_digit())) {
+            std::fs::remove_file(entry.path()).map_err(failed)?;
+        }
+    }
+    Ok(())
+}

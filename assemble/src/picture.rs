@@ -1,0 +1,51 @@
+//! Pictures of the light and of the elements. In go a [`Canvas`] and per-element light; out come images and PNG files.
+
+use crate::canvas::Canvas;
+use crate::exposure::Exposure;
+use crate::output_file;
+use equilux_formats::{Element, Result, Rgb};
+use glam::{DVec2, DVec3};
+use image::RgbImage;
+use image::codecs::png::PngEncoder;
+use std::io;
+use std::path::Path;
+
+/// Behind everything, linear RGB: a dark grey that neither lit nor unlit surfaces have by chance.
+const BACKGROUND: Rgb = [0.02; 3];
+/// Wireframe: paper, surfaces and lines, linear RGB.
+const PAPER: Rgb = [1.0; 3];
+const SURFACE: Rgb = [0.85; 3];
+const LINE: Rgb = [0.01; 3];
+/// Half the width of a line between two elements, pixels.
+const HALF_LINE: f64 = 0.7;
+
+/// The lit scene, each element in one colour. `radiosity`: W/m², one row an element.
+pub fn shade(canvas: &Canvas, radiosity: &[Rgb], exposure: Exposure) -> RgbImage {
+    let colours: Vec<Rgb> = radiosity.iter().map(|&b| exposure.shown(b)).collect();
+    canvas.paint(BACKGROUND, |_, element| colours[element])
+}
+
+/// The edges of the elements as dark lines on light ground, hidden ones left out. `elements` are those that the canvas
+/// was traced with.
+pub fn wireframe(canvas: &Canvas, elements: &[Element]) -> RgbImage {
+    canvas.paint(PAPER, |point, element| {
+        let corners = elements[element].corners.as_slice();
+        if edge_distance(canvas, corners, point) < HALF_LINE { LINE } else { SURFACE }
+    })
+}
+
+/// Distance from an image point inside a convex polygon's picture to the nearest of its edges, pixels.
+fn edge_distance(canvas: &Canvas, corners: &[DVec3], point: DVec2) -> f64 {
+    let project = |i: usize| canvas.view().project(corners[i % corners.len()]);
+    let to_edge = |i| {
+        // In homogeneous coordinates the line through two points is their cross product, also behind the eye.
+        let line = project(i).cross(project(i + 1));
+        (line.dot(point.extend(1.0)) / line.truncate().length()).abs()
+    };
+    (0..corners.len()).map(to_edge).fold(f64::INFINITY, f64::min)
+}
+
+/// Writes `image` to `path` as PNG. Fails when it cannot be written there.
+pub fn write_png(path: &Path, image: &RgbImage) -> Result<()> {
+    output_file::write(path, |out| image.write_with_encoder(PngEncoder::new(out)).map_err(io::Error::other))
+}

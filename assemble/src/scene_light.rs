@@ -1,0 +1,23 @@
+//! What every output shows: the placed elements with the light on them. It borrows everything and computes nothing.
+
+use equilux_bake::world::World;
+use equilux_formats::Rgb;
+
+/// Placed elements, the light on them, and the names to tell about them. Per-element slices follow `world.elements`.
+#[derive(Clone, Copy)]
+pub struct SceneLight<'a> {
+    /// The placed elements, in scene coordinates, metres.
+    pub world: &'a World,
+    /// Diffuse reflectance ρ, 0..1, one row an element.
+    pub reflectance: &'a [Rgb],
+    /// Emission E, W/m², scaled as each instance asks, one row an element.
+    pub emission: &'a [Rgb],
+    /// Irradiance H, W/m², one row an element.
+    pub irradiance: &'a [Rgb],
+    /// Radiosity B, W/m², one row an element.
+    pub radiosity: &'a [Rgb],
+    /// The name of each instance's part.
+    pub part_names: &'a [String],
+    /// The name of each instance.
+    pub instance_names: &'a [String],
+}

@@ -1,0 +1,166 @@
+//! Many files baked one after the other; a bad one does not keep the others from being baked.
+
+use crate::monitor::Monitor;
+use crate::oven::{Baked, Oven};
+use crate::prepare::{Preparation, prepare};
+use crate::{gltf_import::import_scene, prepare::PreparedPart};
+use equilux_formats::{Error, Result, Rows, Store};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use walkdir::WalkDir;
+
+/// What became of all files.
+#[derive(Debug, Serialize)]
+pub struct Batch {
+    /// One entry a file, in the order of the inputs.
+    pub files: Vec<FileOutcome>,
+    /// Wall time.
+    pub seconds: f64,
+}
+
+/// What became of one file.
+#[derive(Debug, Serialize)]
+pub struct FileOutcome {
+    /// The file.
+    pub file: String,
+    /// Its distinct parts.
+    pub parts: Vec<PartOutcome>,
+    /// What was ignored, dropped or repaired.
+    pub notes: Vec<String>,
+    /// Why the file could not be baked.
+    pub error: Option<String>,
+}
+
+/// What became of one part.
+#[derive(Debug, Serialize)]
+pub struct PartOutcome {
+    /// Its name.
+    pub name: String,
+    /// Number of elements.
+    pub elements: usize,
+    /// Element size in force.
+    pub element_size: String,
+    /// Whether its form factors were computed now.
+    pub baked: bool,
+    /// Why they were or were not.
+    pub form_factors_reason: String,
+    /// Why its light was or was not computed.
+    pub light_reason: String,
+    /// Form factors stored.
+    pub stored: usize,
+    /// How far its row sums are from 1: zero if the part is closed on its own.
+    pub row_sum_defect: RowSumDefect,
+    /// Wall time.
+    pub seconds: f64,
+}
+
+/// Distance of row sums from one.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct RowSumDefect {
+    /// The worst row.
+    pub max: f64,
+    /// The mean over all rows.
+    pub mean: f64,
+}
+
+impl Batch {
+    /// Number of parts in all files.
+    pub fn parts(&self) -> usize {
+        self.files.iter().map(|file| file.parts.len()).sum()
+    }
+
+    /// Number of parts whose form factors were computed.
+    pub fn baked(&self) -> usize {
+        self.files.iter().flat_map(|file| &file.parts).filter(|part| part.baked).count()
+    }
+}
+
+/// The glTF files among `inputs` and in the folders among them, sorted within each folder.
+pub fn find_scenes(inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for input in inputs {
+        if !input.is_dir() {
+            files.push(input.clone());
+            continue;
+        }
+        let before = files.len();
+        for entry in WalkDir::new(input).sort_by_file_name() {
+            let entry = entry.map_err(|error| {
+                Error::new(input, error.to_string(), "a folder that can be read", "check its permissions")
+            })?;
+            if entry.file_type().is_file() && is_gltf(entry.path()) {
+                files.push(entry.into_path());
+            }
+        }
+        if files.len() == before {
+            return Err(Error::new(
+                input,
+                "no .gltf or .glb file in this folder",
+                "at least one",
+                "name a folder that holds the parts, or the files themselves",
+            ));
+        }
+    }
+    Ok(files)
+}
+
+fn is_gltf(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
+}
+
+/// Bake every part of every file.
+pub fn bake_files(files: &[PathBuf], wanted: &Preparation, store: &Store, monitor: &Monitor) -> Batch {
+    let start = Instant::now();
+    let mut outcomes = Vec::new();
+    for file in files {
+        let mut outcome =
+            FileOutcome { file: file.display().to_string(), parts: vec![], notes: vec![], error: None };
+        if let Err(error) = bake_file(file, wanted, store, monitor, &mut outcome) {
+            outcome.error = Some(error.to_string());
+        }
+        outcomes.push(outcome);
+    }
+    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64() }
+}
+
+fn bake_file(
+    file: &Path,
+    wanted: &Preparation,
+    store: &Store,
+    monitor: &Monitor,
+    outcome: &mut FileOutcome,
+) -> Result<()> {
+    let scene = import_scene(file)?;
+    outcome.notes.clone_from(&scene.notes);
+    let oven = Oven { store, file, monitor };
+    for part in &prepare(&scene, wanted)?.parts {
+        let start = Instant::now();
+        let baked = oven.bake(part)?.ok_or_else(|| {
+            let remedy = "run the same command again: what was finished is in the cache";
+            Error::new(file, format!("stopped while baking part `{}`", part.name), "a complete run", remedy)
+        })?;
+        outcome.parts.push(part_outcome(part, &baked, start.elapsed().as_secs_f64()));
+    }
+    Ok(())
+}
+
+fn part_outcome(part: &PreparedPart, baked: &Baked, seconds: f64) -> PartOutcome {
+    PartOutcome {
+        name: part.name.clone(),
+        elements: part.geometry.elements.len(),
+        element_size: part.element_size.to_string(),
+        baked: !baked.form_factors.is_reused(),
+        form_factors_reason: baked.form_factors.to_string(),
+        light_reason: baked.light.to_string(),
+        stored: baked.part.self_block.stored(),
+        row_sum_defect: row_sum_defect(&baked.part.self_block),
+        seconds,
+    }
+}
+
+fn row_sum_defect(block: &Rows) -> RowSumDefect {
+    let defects: Vec<f64> = (0..block.receivers()).map(|i| (block.row_sum(i) - 1.0).abs()).collect();
+    let max = defects.iter().copied().fold(0.0, f64::max);
+    RowSumDefect { max, mean: defects.iter().sum::<f64>() / defects.len().max(1) as f64 }
+}

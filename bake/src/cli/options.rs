@@ -1,0 +1,99 @@
+//! Options that both programs understand.
+
+use crate::bisect::Cut;
+use crate::elements::ElementSize;
+use crate::prepare::{Division, Preparation};
+use clap::{Args, ValueEnum};
+use equilux_formats::LocalSolver;
+use std::path::PathBuf;
+
+/// How a scene becomes parts and elements, and where the cache is.
+#[derive(Args, Debug, Clone)]
+pub struct SceneOptions {
+    /// Folder that keeps what was computed; it can be copied to another machine
+    #[arg(long, value_name = "DIR", default_value = ".equilux")]
+    pub cache: PathBuf,
+    /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
+    #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]
+    pub element_size: Option<ElementSize>,
+    /// How much an answer may err by compressing form factors; 0 keeps every one of them
+    #[arg(long, value_name = "EPS", default_value = "0", value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Make parts by planes: this many cells, each time the largest cut at the median of its longest axis
+    #[arg(long, value_name = "N", conflicts_with = "cut", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub bisect: Option<u32>,
+    /// Make parts by this plane, such as x=1.5; may be given several times
+    #[arg(long, value_name = "AXIS=METRES")]
+    pub cut: Vec<Cut>,
+    /// Who solves a part's own equilibrium [default: direct for small parts, iterative for large]
+    #[arg(long, value_name = "SOLVER")]
+    pub local_solver: Option<Solver>,
+    /// Threads to use [default: all]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
+    pub threads: Option<u32>,
+    /// Print one JSON object on stdout and nothing else
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A local solver's name on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Solver {
+    /// LU factors, kept with the part
+    Direct,
+    /// Gauss-Seidel sweeps
+    GaussSeidel,
+    /// Progressive refinement: the brightest unshot element first
+    Progressive,
+    /// GMRES on the stored rows
+    Iterative,
+}
+
+impl From<Solver> for LocalSolver {
+    fn from(solver: Solver) -> Self {
+        match solver {
+            Solver::Direct => Self::Direct,
+            Solver::GaussSeidel => Self::GaussSeidel,
+            Solver::Progressive => Self::Progressive,
+            Solver::Iterative => Self::Iterative,
+        }
+    }
+}
+
+impl SceneOptions {
+    /// The choices about elements and parts.
+    pub fn preparation(&self) -> Preparation {
+        let division = match self.bisect {
+            Some(count) => Division::Bisect(count as usize),
+            None if self.cut.is_empty() => Division::Authored,
+            None => Division::Cuts(self.cut.clone()),
+        };
+        let local_solver = self.local_solver.map(LocalSolver::from);
+        Preparation { element_size: self.element_size, division, local_solver }
+    }
+
+    /// Use the number of threads asked for.
+    pub fn set_threads(&self) -> anyhow::Result<()> {
+        if let Some(threads) = self.threads {
+            rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global()?;
+        }
+        Ok(())
+    }
+}
+
+fn element_size(text: &str) -> Result<ElementSize, String> {
+    if text == "mesh" {
+        return Ok(ElementSize::Mesh);
+    }
+    match text.parse::<f64>() {
+        Ok(size) if size > 0.0 && size.is_finite() => Ok(ElementSize::Metres(size)),
+        _ => Err("an element size is a number of metres above zero, or `mesh`".into()),
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(0.0) => Ok(0.0),
+        _ => Err("every form factor is kept: the only tolerance there is now is 0".into()),
+    }
+}
