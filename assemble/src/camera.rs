@@ -115,18 +115,20 @@ impl View {
         }
     }
 
-    /// Area of the elements whose centroid is seen from the front, foreshortened by the angle they are seen at. Of
+    /// Σ A √cosθ of the elements whose centroid is seen from the front, at an angle θ. The root stands between counting
+    /// what is seen, which likes grazing views, and counting how large it looks, which likes views onto a corner. Of
     /// many elements every so-manieth is taken.
     fn shown(&self, elements: &[Element], index: &RayIndex) -> f64 {
         let seen = |&(i, element): &(usize, &Element)| {
             let sight = element.centroid - self.position;
             index.first_front(self.position, sight).is_some_and(|hit| hit.element == i)
         };
-        let foreshortened = |element: &Element| {
-            element.area * element.normal.dot((self.position - element.centroid).normalize())
+        let weight = |element: &Element| {
+            let towards_eye = (self.position - element.centroid).normalize();
+            element.area * element.normal.dot(towards_eye).sqrt()
         };
         let judged = elements.iter().enumerate().step_by(elements.len() / JUDGED + 1);
-        judged.filter(seen).map(|(_, element)| foreshortened(element)).sum()
+        judged.filter(seen).map(|(_, element)| weight(element)).sum()
     }
 }
 
@@ -162,7 +164,7 @@ fn box_corners(elements: &[Element]) -> [DVec3; 8] {
 fn directions() -> impl Iterator<Item = DVec3> {
     let around = (0..12).map(|i| f64::from(i) * PI / 6.0);
     around.flat_map(|azimuth| {
-        [0.0, 15.0, 30.0].map(|degrees: f64| {
+        [5.0, 30.0].map(|degrees: f64| {
             let elevation = degrees.to_radians();
             DVec3::new(azimuth.sin() * elevation.cos(), elevation.sin(), azimuth.cos() * elevation.cos())
         })
