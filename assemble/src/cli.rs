@@ -26,7 +26,8 @@ struct Arguments {
     /// At most this many rounds
     #[arg(long, value_name = "N")]
     rounds: Option<usize>,
-    /// Stop when this error is proved, relative to the brightest radiosity [default: 1e-6, with --verify 1e-12]
+    /// Stop when this error is proved, relative to the brightest radiosity; 0 goes on until
+    /// rounding [default: 1e-6, with --verify 0]
     #[arg(long, value_name = "BOUND", value_parser = error_bound)]
     error: Option<f64>,
     /// Also solve the classic whole-scene matrix and print the largest difference
@@ -78,7 +79,7 @@ pub fn main() -> ExitCode {
 
 fn assemble(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Report> {
     arguments.options.set_threads()?;
-    let default_error = if arguments.verify { 1e-12 } else { 1e-6 };
+    let default_error = if arguments.verify { 0.0 } else { 1e-6 };
     let job = Job {
         scene: arguments.scene.clone(),
         cache: arguments.options.cache.clone(),

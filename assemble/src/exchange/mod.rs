@@ -25,7 +25,7 @@ pub enum Method {
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The error bound asked for, relative to the brightest radiosity.
+    /// The error bound asked for, relative to the brightest radiosity; 0 asks for all that rounding allows.
     pub error: f64,
     /// At most this many rounds.
     pub rounds: usize,
@@ -83,8 +83,9 @@ pub struct Outcome {
     pub converged: bool,
 }
 
-/// A round that lowers the bound by less than this share, at rounding level, is the last.
-const STALLED: f64 = 0.95;
+/// A bound below this, relative to the brightest radiosity, that a round lowers by less than the second number has
+/// reached rounding.
+const STALLED: (f64, f64) = (1e-9, 0.95);
 
 /// The instances' shares of the equation.
 pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics]) -> Vec<Node<'a>> {
@@ -120,8 +121,8 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
         let brightest = largest(&state.flat()).into_iter().fold(0.0, f64::max);
         let relative_bound = if error_bound == 0.0 { 0.0 } else { error_bound / brightest };
         converged = relative_bound <= goal.error;
-        let stalled = relative_bound < 1e-9
-            && rounds.last().is_some_and(|last| relative_bound > STALLED * last.relative_bound);
+        let stalled = relative_bound < STALLED.0
+            && rounds.last().is_some_and(|last| relative_bound > STALLED.1 * last.relative_bound);
         rounds.push(Round {
             number: rounds.len() + 1,
             residual: residual.iter().flatten().flatten().fold(0.0, |most: f64, r| most.max(r.abs())),
@@ -132,6 +133,7 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
         });
         monitor.advance(1);
         if stalled {
+            converged = goal.error == 0.0;
             break;
         }
     }
