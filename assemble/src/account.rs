@@ -36,13 +36,20 @@ pub fn row_sum_defect(nodes: &[Node]) -> Defect {
 
 /// Refuse a scene in which some group of elements keeps all its light for ever and gets more.
 pub fn refuse_endless_light(placed: &Placed, nodes: &[Node], optics: &Optics, file: &Path) -> Result<()> {
-    let place: Vec<(usize, usize)> =
-        nodes.iter().enumerate().flat_map(|(k, n)| (0..n.self_block.receivers()).map(move |i| (k, i))).collect();
+    let place: Vec<(usize, usize)> = nodes
+        .iter()
+        .enumerate()
+        .flat_map(|(k, n)| (0..n.self_block.receivers()).map(move |i| (k, i)))
+        .collect();
     let rows = |element: usize| {
         let (k, i) = place[element];
-        let first = placed.world.elements_of(k).start;
-        let own = nodes[k].self_block.row(i).map(move |(j, f)| (j + first, f));
-        own.chain(nodes[k].coupling.row(i))
+        let first = placed.world.nodes_of(k).start;
+        let own = nodes[k].self_block.row(i).map(|(j, f)| (j + first, f));
+        let mut row = Vec::new();
+        for (node, value) in own.chain(nodes[k].coupling.row(i)) {
+            spread(placed, node, &mut |element, share| row.push((element, value * share)));
+        }
+        row
     };
     let Some(element) = endless_light(optics, rows) else { return Ok(()) };
     let instance = &placed.instances[place[element].0];
@@ -55,4 +62,12 @@ pub fn refuse_endless_light(placed: &Placed, nodes: &[Node], optics: &Optics, fi
         "a reflectance below 1 or an opening somewhere",
         "lower a base colour below 1, or switch the emission off",
     ))
+}
+
+/// Call `visit` with every element of a node of the scene and its share of the node's area.
+fn spread(placed: &Placed, node: usize, visit: &mut impl FnMut(usize, f64)) {
+    let instance = placed.world.instance_of_node(node);
+    let (nodes, elements) = (placed.world.nodes_of(instance), placed.world.elements_of(instance));
+    let clusters = &placed.part_of(instance).part.geometry.clusters;
+    clusters.spread(node - nodes.start, &mut |element, share| visit(elements.start + element, share));
 }

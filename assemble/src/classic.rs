@@ -2,9 +2,9 @@
 
 use crate::placed::Placed;
 use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise};
-use equilux_bake::form_factor::block::block;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Optics, Rgb, Rows};
+use equilux_bake::treecode::{EXACT, Request, block};
+use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
 use std::time::{Duration, Instant};
 
 /// The whole-scene answer and what it took.
@@ -21,21 +21,43 @@ pub struct Classic {
 
 /// Compute the whole matrix at once and solve it at once. None if the monitor was stopped.
 pub fn classic(placed: &Placed, monitor: &Monitor) -> Option<Classic> {
-    let all = 0..placed.world.elements.len();
-    monitor.begin("classic matrix", all.len());
-    let timed = block(&placed.world, all.clone(), std::slice::from_ref(&all), all.clone(), monitor)?;
+    let (matrix, form_factor_time) = whole_matrix(placed, monitor)?;
     let start = Instant::now();
     let optics = whole_optics(placed);
-    let solver = default_solver(all.len());
-    let factors = factorise(&timed.block, &optics.reflectance, solver);
-    let system = LocalSystem::new(&timed.block, &optics.reflectance, solver, factors.as_ref());
+    let trees: Vec<&ClusterTree> =
+        (0..placed.instances.len()).map(|k| &placed.part_of(k).part.geometry.clusters).collect();
+    let clusters = ClusterTree::joined(&trees);
+    let solver = default_solver(clusters.elements());
+    let factors = factorise(&matrix, &clusters, &optics.reflectance, solver);
+    let system = LocalSystem::new(&matrix, &clusters, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
-    Some(Classic {
-        radiosity,
-        form_factor_time: timed.time,
-        solve_time: start.elapsed(),
-        matrix: timed.block,
-    })
+    Some(Classic { radiosity, form_factor_time, solve_time: start.elapsed(), matrix })
+}
+
+/// Every form factor of the scene, element by element.
+fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> {
+    let world = &placed.world;
+    let everyone: Vec<usize> = (0..placed.instances.len()).collect();
+    let element: Vec<u32> =
+        (0..world.nodes.len()).map(|node| world.element_of(node).map_or(u32::MAX, |e| e as u32)).collect();
+    let (mut rows, mut time) = (Vec::new(), Duration::ZERO);
+    monitor.begin("classic matrix", world.elements.len());
+    for &receivers in &everyone {
+        let request = Request {
+            world,
+            receivers,
+            senders: &everyone,
+            columns: 0..world.nodes.len(),
+            already: None,
+            resolution: EXACT,
+        };
+        let timed = block(&request, monitor)?;
+        time += timed.time;
+        let named = |i: usize| timed.block.row(i).map(|(node, f)| (element[node], f)).collect::<Vec<_>>();
+        rows.extend((0..timed.block.receivers()).map(named));
+    }
+    let columns = 2 * world.elements.len() - usize::from(!world.elements.is_empty());
+    Some((Rows::from_rows(columns, rows), time))
 }
 
 /// Optics of all elements, instance after instance.

@@ -1,11 +1,11 @@
 //! The command line of `assemble`.
 
 use crate::exchange::{Goal, Method};
+use crate::report::Report;
 use crate::run::{Job, run};
 use clap::{Parser, ValueEnum};
 use equilux_bake::cli::{options::SceneOptions, progress};
 use equilux_bake::monitor::Monitor;
-use crate::report::Report;
 use std::path::PathBuf;
 use std::process::ExitCode;
 

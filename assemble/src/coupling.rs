@@ -1,14 +1,14 @@
 //! The blocks between parts, and a part's own block where something foreign stands inside it.
 //!
-//! For each instance k: F_kl for all other instances l, as one block whose columns count through all elements of the
+//! For each instance k: F_kl for all other instances l, as one block whose columns count through all nodes of the
 //! scene; and F_kk as baked, or computed anew with the intruders in place. Everything in the scene blocks.
 
 use crate::hull::Hull;
 use crate::placed::Placed;
 use equilux_bake::cached::{Origin, cached};
-use equilux_bake::form_factor::block::block;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{KERNEL_VERSION, light_manifest, local_equilibrium};
+use equilux_bake::treecode::{Request, Resolution, block};
 use equilux_formats::{
     BakedLight, Content, Digest, Factors, LocalEquilibrium, Manifest, Result, Rows, Store,
 };
@@ -18,7 +18,7 @@ use std::time::Duration;
 
 /// What an instance exchanges light through.
 pub struct Coupled {
-    /// F_kl for all l ≠ k, `elements of k × all elements`.
+    /// F_kl for all l ≠ k, `elements of k × all nodes of the scene`.
     pub coupling: Rows,
     /// Where the coupling came from.
     pub origin: Origin,
@@ -62,6 +62,8 @@ pub struct Coupler<'a> {
     pub store: &'a Store,
     /// The scene's file, for remembering what was coupled last.
     pub file: &'a Path,
+    /// How exactly form factors are kept.
+    pub resolution: Resolution,
     /// Progress and the wish to stop.
     pub monitor: &'a Monitor,
 }
@@ -69,12 +71,6 @@ pub struct Coupler<'a> {
 impl Coupler<'_> {
     /// Couple one instance with all others. None if the monitor was stopped.
     pub fn couple(&self, instance: usize) -> Result<Option<Coupled>> {
-        let world = &self.placed.world;
-        let receivers = world.elements_of(instance);
-        let others = [0..receivers.start, receivers.end..world.elements.len()];
-        let mut time = Duration::ZERO;
-        let found = self.block(instance, "coupling", &others, 0..world.elements.len(), &mut time)?;
-        let Some((coupling, origin, _)) = found else { return Ok(None) };
         let intruders = self.intruders(instance);
         let mut corrected = None;
         if !intruders.is_empty() {
@@ -83,6 +79,20 @@ impl Coupler<'_> {
                 return Ok(None);
             }
         }
+        let baked = &self.placed.part_of(instance).part.self_block;
+        let own = corrected.as_ref().map_or(baked, |c: &Corrected| &c.self_block);
+        // A row that is full already sees nothing of other parts: nothing is searched for it.
+        let seen: Vec<f64> = (0..own.receivers()).map(|i| own.row_sum(i)).collect();
+        let others: Vec<usize> = (0..self.placed.instances.len()).filter(|&l| l != instance).collect();
+        let request = Request {
+            world: &self.placed.world,
+            receivers: instance,
+            senders: &others,
+            columns: 0..self.placed.world.nodes.len(),
+            already: Some(&seen),
+            resolution: self.resolution,
+        };
+        let Some((coupling, origin, _, time)) = self.block("coupling", &request)? else { return Ok(None) };
         Ok(Some(Coupled { coupling, origin, corrected, time }))
     }
 
@@ -101,41 +111,43 @@ impl Coupler<'_> {
 
     /// The whole self block anew, with everything that stands inside.
     fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Option<Corrected>> {
-        let own = self.placed.world.elements_of(instance);
-        let mut time = Duration::ZERO;
-        let senders = std::slice::from_ref(&own);
-        let found = self.block(instance, "corrected self block", senders, own.clone(), &mut time)?;
-        let Some((self_block, origin, key)) = found else { return Ok(None) };
+        let request = Request {
+            world: &self.placed.world,
+            receivers: instance,
+            senders: &[instance],
+            columns: self.placed.world.nodes_of(instance),
+            already: None,
+            resolution: self.resolution,
+        };
+        let Some((self_block, origin, key, time)) = self.block("corrected self block", &request)? else {
+            return Ok(None);
+        };
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let part = &self.placed.part_of(instance).part;
         let manifest = light_manifest(key, &part.optics, part.local.solver);
         let (light, _) = cached(self.store, &self.name(instance, "corrected light"), &manifest, || {
-            let local = local_equilibrium(&self_block, &part.optics, part.local.solver);
+            let clusters = &part.geometry.clusters;
+            let local = local_equilibrium(&self_block, clusters, &part.optics, part.local.solver);
             Ok(Some(BakedLight { optics: part.optics.clone(), local }))
         })?
         .expect("a local equilibrium is not stopped halfway");
         Ok(Some(Corrected { self_block, local: light.local, intruders, origin, time }))
     }
 
-    fn block(
-        &self,
-        instance: usize,
-        what: &str,
-        senders: &[std::ops::Range<usize>],
-        columns: std::ops::Range<usize>,
-        time: &mut Duration,
-    ) -> Result<Option<(Rows, Origin, Digest)>> {
+    fn block(&self, what: &str, request: &Request) -> Result<Option<(Rows, Origin, Digest, Duration)>> {
+        let instance = request.receivers;
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
+        let mut time = Duration::ZERO;
         let found = cached(self.store, &name, &manifest, || {
-            let receivers = self.placed.world.elements_of(instance);
-            self.monitor.begin(format!("{what} of {}", self.placed.instances[instance].name), receivers.len());
-            Ok(block(&self.placed.world, receivers, senders, columns, self.monitor).map(|timed| {
-                *time = timed.time;
+            let receivers = self.placed.world.elements_of(instance).len();
+            self.monitor.begin(format!("{what} of {}", self.placed.instances[instance].name), receivers);
+            Ok(block(request, self.monitor).map(|timed| {
+                time = timed.time;
                 timed.block
             }))
         })?;
-        Ok(found.map(|(rows, origin)| (rows, origin, manifest.key().into())))
+        Ok(found.map(|(rows, origin)| (rows, origin, manifest.key().into(), time)))
     }
 
     fn name(&self, instance: usize, what: &str) -> String {
@@ -149,6 +161,7 @@ impl Coupler<'_> {
         let mut manifest = Manifest::new()
             .setting("block", what)
             .setting("kernel", KERNEL_VERSION)
+            .setting("resolution", self.resolution)
             .digest("the part", self.placed.part_of(instance).key.clone());
         for (number, other) in self.placed.instances.iter().enumerate().filter(|&(n, _)| n != instance) {
             let relative = inverse * other.placement;

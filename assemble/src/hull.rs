@@ -20,7 +20,8 @@ impl Hull {
         let tolerance = FLATNESS * corners().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let slab = |direction: DVec3| {
             let along = corners().map(|p| p.dot(direction));
-            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
+            let (low, high) =
+                along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
             (direction, low + tolerance, high - tolerance)
         };
         Self { slabs: directions().map(slab).to_vec() }

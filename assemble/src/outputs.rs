@@ -59,7 +59,10 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     written.extend(write_tables(job, &folder, light, exposure)?);
     let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     if !rounds.is_empty() {
-        lines.insert(0, format!("{} to round-{:03}.png", folder.join("round-001.png").display(), rounds.len()));
+        lines.insert(
+            0,
+            format!("{} to round-{:03}.png", folder.join("round-001.png").display(), rounds.len()),
+        );
     }
     Ok(lines)
 }

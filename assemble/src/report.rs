@@ -226,8 +226,11 @@ impl Report {
 
     fn blocks_line(&self) -> String {
         let blocks = &self.blocks;
-        let left_out: Vec<String> =
-            blocks.coupling_left_out.iter().map(|(reason, count)| format!(", {count} left out ({reason})")).collect();
+        let left_out: Vec<String> = blocks
+            .coupling_left_out
+            .iter()
+            .map(|(reason, count)| format!(", {count} left out ({reason})"))
+            .collect();
         format!(
             "own blocks: {} baked, {} reused, {} corrected for what stands inside; coupling: {} computed, {} reused{}; \
              {} form factors computed",
@@ -250,7 +253,18 @@ impl Report {
             ),
             format!(
                 "{:<8}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}",
-                "seconds", s.step1, s.step2, s.step3, s.step4, s.step5, s.step6, s.step7, s.step8, s.t1, s.t2, s.t3
+                "seconds",
+                s.step1,
+                s.step2,
+                s.step3,
+                s.step4,
+                s.step5,
+                s.step6,
+                s.step7,
+                s.step8,
+                s.t1,
+                s.t2,
+                s.t3
             ),
             format!("measured: {:.3} s in all with {} threads", s.total, rayon::current_num_threads()),
         ]
@@ -258,7 +272,10 @@ impl Report {
 
     /// The first rounds and the last; a thousand lines help nobody.
     fn round_lines(&self) -> Vec<String> {
-        let mut lines = vec![format!("{:<8}{:>12}{:>14}{:>14}{:>10}", "round", "residual", "bound W/m²", "relative", "seconds")];
+        let mut lines = vec![format!(
+            "{:<8}{:>12}{:>14}{:>14}{:>10}",
+            "round", "residual", "bound W/m²", "relative", "seconds"
+        )];
         let count = self.rounds.len();
         for round in &self.rounds {
             if round.round <= 12 || round.round + 3 > count {

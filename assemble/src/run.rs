@@ -77,7 +77,8 @@ fn bake_parts(
     monitor: &Monitor,
 ) -> Result<Option<(Placed, String)>> {
     let prepared = prepare(scene, &job.preparation)?;
-    let oven = Oven { store, file: &job.scene, monitor };
+    let resolution = job.preparation.resolution;
+    let oven = Oven { store, file: &job.scene, resolution, monitor };
     let mut parts: Vec<Baked> = Vec::new();
     for part in &prepared.parts {
         let Some(baked) = oven.bake(part)? else { return Ok(None) };
@@ -87,11 +88,18 @@ fn bake_parts(
 }
 
 fn couple(job: &Job, placed: &Placed, store: &Store, monitor: &Monitor) -> Result<Option<Vec<Coupled>>> {
-    let coupler = Coupler { placed, store, file: &job.scene, monitor };
+    let resolution = job.preparation.resolution;
+    let coupler = Coupler { placed, store, file: &job.scene, resolution, monitor };
     (0..placed.instances.len()).map(|k| coupler.couple(k)).collect()
 }
 
-fn report(placed: &Placed, coupled: &[Coupled], nodes: &[Node], outcome: &Outcome, optics: &Optics) -> Report {
+fn report(
+    placed: &Placed,
+    coupled: &[Coupled],
+    nodes: &[Node],
+    outcome: &Outcome,
+    optics: &Optics,
+) -> Report {
     let elements = placed.world.elements.len();
     Report {
         scene: String::new(),
@@ -160,7 +168,7 @@ fn blocks(placed: &Placed, coupled: &[Coupled]) -> Blocks {
 fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
     let mut seen = vec![false; placed.instances.len()];
     let of: Vec<usize> =
-        (0..seen.len()).flat_map(|l| std::iter::repeat_n(l, placed.world.elements_of(l).len())).collect();
+        (0..seen.len()).flat_map(|l| std::iter::repeat_n(l, placed.world.nodes_of(l).len())).collect();
     for receiver in 0..coupled.coupling.receivers() {
         coupled.coupling.row(receiver).for_each(|(sender, _)| seen[of[sender]] = true);
     }
@@ -200,7 +208,8 @@ fn intruder_notes(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
     let note = |(k, own): (usize, &Coupled)| {
         let corrected = own.corrected.as_ref()?;
         let inside: Vec<String> = corrected.intruders.iter().map(|&i| name(i)).collect();
-        let how = if corrected.origin.is_reused() { "taken corrected from the cache" } else { "computed anew" };
+        let how =
+            if corrected.origin.is_reused() { "taken corrected from the cache" } else { "computed anew" };
         Some(format!("{} stands inside {}: its own block was {how}", inside.join(", "), name(k)))
     };
     coupled.iter().enumerate().filter_map(note).collect()

@@ -133,7 +133,7 @@ fn bake_file(
 ) -> Result<()> {
     let scene = import_scene(file)?;
     outcome.notes.clone_from(&scene.notes);
-    let oven = Oven { store, file, monitor };
+    let oven = Oven { store, file, resolution: wanted.resolution, monitor };
     for part in &prepare(&scene, wanted)?.parts {
         let start = Instant::now();
         let baked = oven.bake(part)?.ok_or_else(|| {

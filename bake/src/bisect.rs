@@ -3,6 +3,7 @@
 //! The cells are convex, so nothing foreign can stand between two points of one of them: a cell's own block of form
 //! factors is exact inside the whole. Debelov & Sevastyanov, §2.
 
+use crate::clusters;
 use crate::form_factor::polygon::{Side, clip};
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
 use glam::DVec3;
@@ -100,7 +101,7 @@ pub fn cut(geometry: &Geometry, plane: Cut) -> [Geometry; 2] {
 }
 
 fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f64) -> Geometry {
-    let mut half = Geometry::default();
+    let (mut elements, mut faces) = (vec![], vec![]);
     let mut new_face: Vec<Option<FaceId>> = vec![None; geometry.faces.len()];
     for element in &geometry.elements {
         let corners = element.corners.as_slice();
@@ -116,13 +117,13 @@ fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f
         };
         for piece in pieces {
             let face = *new_face[element.face.index()].get_or_insert_with(|| {
-                half.faces.push(clip_face(&geometry.faces[element.face.index()], &height));
-                FaceId::from_index(half.faces.len() - 1)
+                faces.push(clip_face(&geometry.faces[element.face.index()], &height));
+                FaceId::from_index(faces.len() - 1)
             });
-            half.elements.push(Element::new(piece, element.material, face));
+            elements.push(Element::new(piece, element.material, face));
         }
     }
-    half
+    clusters::geometry(elements, faces)
 }
 
 fn clip_face(face: &Face, height: impl Fn(DVec3) -> f64) -> Face {

@@ -1,5 +1,6 @@
 //! Surfaces → elements: every surface is cut into near-square quads or triangles no larger than asked for.
 
+use crate::clusters;
 use crate::merge::{Merged, merge};
 use crate::planes::FLATNESS;
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part};
@@ -42,7 +43,7 @@ pub fn area(part: &Part) -> f64 {
     part.surfaces.iter().map(|s| s.corners.double_area_vector().length() / 2.0 * sides(s.material)).sum()
 }
 
-/// The part's elements and faces, ordered by face, front sides before back sides.
+/// The part's elements and faces, in the order of the elements' hierarchy.
 pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
     let panels = panels(part, size);
     let polygons: Vec<Face> = panels.iter().map(|panel| polygon(&panel.corners)).collect();
@@ -64,7 +65,7 @@ pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
             elements.push(Element::new(corners, material, FaceId(face)));
         });
     }
-    Geometry { elements, faces }
+    clusters::geometry(elements, faces)
 }
 
 /// Reflectance and emission of every element.

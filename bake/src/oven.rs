@@ -3,20 +3,20 @@
 use crate::cached::{Origin, cached};
 use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::{LocalSystem, factorise};
-use crate::form_factor::block::block;
 use crate::monitor::Monitor;
 use crate::prepare::PreparedPart;
+use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use equilux_formats::{
-    BakedGeometry, BakedLight, BakedPart, Content, Digest, Error, Geometry, Key, LocalEquilibrium,
-    LocalSolver, Manifest, Optics, Result, Rgb, Rows, Store,
+    BakedGeometry, BakedLight, BakedPart, ClusterTree, Content, Digest, Error, Geometry, Key,
+    LocalEquilibrium, LocalSolver, Manifest, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
-pub const KERNEL_VERSION: u32 = 1;
+pub const KERNEL_VERSION: u32 = 2;
 
 /// A baked part and how it came about.
 pub struct Baked {
@@ -40,6 +40,8 @@ pub struct Oven<'a> {
     pub store: &'a Store,
     /// The file that the parts come from, for messages and for remembering what was baked last.
     pub file: &'a Path,
+    /// How exactly form factors are kept.
+    pub resolution: Resolution,
     /// Progress and the wish to stop.
     pub monitor: &'a Monitor,
 }
@@ -47,29 +49,39 @@ pub struct Oven<'a> {
 impl Oven<'_> {
     /// Bake one part, or take from the cache what is there. None if the monitor was stopped.
     pub fn bake(&self, part: &PreparedPart) -> Result<Option<Baked>> {
-        let manifest = geometry_manifest(part);
+        let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
         let mut form_factor_time = Duration::ZERO;
         let name = |what: &str| format!("{what} of {} in {}", part.name, self.file.display());
         let found = cached(self.store, &name("form factors"), &manifest, || {
             self.monitor.begin(format!("form factors of {}", part.name), part.geometry.elements.len());
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
-            let all = 0..world.elements.len();
-            Ok(block(&world, all.clone(), std::slice::from_ref(&all), all.clone(), self.monitor).map(
-                |timed| {
-                    form_factor_time = timed.time;
-                    BakedGeometry { geometry: part.geometry.clone(), self_block: timed.block }
-                },
-            ))
+            let request = Request {
+                world: &world,
+                receivers: 0,
+                senders: &[0],
+                columns: world.nodes_of(0),
+                already: None,
+                resolution: self.resolution,
+            };
+            Ok(block(&request, self.monitor).map(|timed| {
+                form_factor_time = timed.time;
+                BakedGeometry { geometry: part.geometry.clone(), self_block: timed.block }
+            }))
         })?;
         let Some((geometry, form_factors)) = found else { return Ok(None) };
         let start = Instant::now();
         let manifest = light_manifest(key.clone().into(), &part.optics, part.solver);
         let (light, light_origin) = cached(self.store, &name("light"), &manifest, || {
             self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
-            self.refuse_endless_light(part, &geometry.self_block)?;
+            self.refuse_endless_light(part, &geometry)?;
             Ok(Some(BakedLight {
-                local: local_equilibrium(&geometry.self_block, &part.optics, part.solver),
+                local: local_equilibrium(
+                    &geometry.self_block,
+                    &geometry.geometry.clusters,
+                    &part.optics,
+                    part.solver,
+                ),
                 optics: part.optics.clone(),
             }))
         })?
@@ -86,8 +98,11 @@ impl Oven<'_> {
         Ok(Some(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time }))
     }
 
-    fn refuse_endless_light(&self, part: &PreparedPart, block: &Rows) -> Result<()> {
-        let Some(element) = endless_in_block(&part.optics, block) else { return Ok(()) };
+    fn refuse_endless_light(&self, part: &PreparedPart, baked: &BakedGeometry) -> Result<()> {
+        let Some(element) = endless_in_block(&part.optics, &baked.self_block, &baked.geometry.clusters)
+        else {
+            return Ok(());
+        };
         Err(Error::new(
             self.file,
             format!(
@@ -102,18 +117,24 @@ impl Oven<'_> {
 }
 
 /// The part's light with nothing arriving from outside, and what its solver wants kept.
-pub fn local_equilibrium(block: &Rows, optics: &Optics, solver: LocalSolver) -> LocalEquilibrium {
-    let factors = factorise(block, &optics.reflectance, solver);
-    let system = LocalSystem::new(block, &optics.reflectance, solver, factors.as_ref());
+pub fn local_equilibrium(
+    block: &Rows,
+    clusters: &ClusterTree,
+    optics: &Optics,
+    solver: LocalSolver,
+) -> LocalEquilibrium {
+    let factors = factorise(block, clusters, &optics.reflectance, solver);
+    let system = LocalSystem::new(block, clusters, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
     LocalEquilibrium { solver, radiosity, factors }
 }
 
 /// Everything that the part's own form factors depend on, and nothing else.
-fn geometry_manifest(part: &PreparedPart) -> Manifest {
+fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifest {
     Manifest::new()
         .setting("kernel", KERNEL_VERSION)
         .setting("element size", part.element_size)
+        .setting("resolution", resolution)
         .digest("geometry", geometry_digest(&part.geometry))
 }
 

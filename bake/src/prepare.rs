@@ -1,8 +1,10 @@
 //! Scene → parts ready to bake: elements of the chosen size, or cells that planes cut out of the whole scene.
 
 use crate::bisect::{Cut, bisect, cut_all};
+use crate::clusters;
 use crate::elements::{ElementSize, area, default_size, optics, subdivide};
 use crate::equilibrium::default_solver;
+use crate::treecode::Resolution;
 use crate::world::World;
 use equilux_formats::{
     Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, PartId,
@@ -17,6 +19,8 @@ pub struct Preparation {
     pub element_size: Option<ElementSize>,
     /// What is a part.
     pub division: Division,
+    /// How exactly form factors are kept.
+    pub resolution: Resolution,
     /// Local solver; none to let the part's size decide. A part's own `local_solver` comes first.
     pub local_solver: Option<LocalSolver>,
 }
@@ -155,7 +159,7 @@ fn merged(prepared: &Prepared) -> (Geometry, Vec<Material>) {
         let placed = world.elements[world.elements_of(number)].iter();
         elements.extend(placed.map(|e| Element { material: own[e.material.index()], ..*e }));
     }
-    (Geometry { elements, faces: world.faces }, materials)
+    (clusters::geometry(elements, world.faces), materials)
 }
 
 fn number_of(materials: &mut Vec<Material>, material: Material) -> MaterialId {
@@ -175,6 +179,7 @@ fn recentred(geometry: Geometry) -> (Geometry, DVec3) {
     let moved = Geometry {
         elements: geometry.elements.iter().map(element).collect(),
         faces: geometry.faces.iter().map(face).collect(),
+        clusters: geometry.clusters.clone(),
     };
     (moved, origin)
 }

@@ -1,12 +1,13 @@
-//! Elements and faces of one or many instances in one frame: what form-factor rows are computed in.
+//! Elements, clusters and faces of one or many instances in one frame: what form-factor rows are computed in.
 
+use crate::form_factor::polygon::{Polygon, convex_hull};
+use crate::occluders::Occluders;
 use crate::planes;
-use crate::visibility::FaceIndex;
 use equilux_formats::{Element, Face, FaceId, Geometry};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 use std::ops::Range;
 
-/// Placed geometry with what finds its way through it.
+/// Placed geometry with what blocks light in it.
 pub struct World {
     /// All elements, instance after instance; `face` counts through [`World::faces`].
     pub elements: Vec<Element>,
@@ -14,38 +15,97 @@ pub struct World {
     pub faces: Vec<Face>,
     /// The plane that each face lies in.
     pub planes: Vec<u32>,
-    /// Runs of elements that lie in the same face and look the same way.
-    pub groups: Vec<Range<usize>>,
-    /// Finds faces by place.
-    pub index: FaceIndex,
-    /// The elements of each instance.
-    instances: Vec<Range<usize>>,
+    /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
+    pub nodes: Vec<Node>,
+    /// The faces and solids by place.
+    pub occluders: Occluders,
+    instances: Vec<Placed>,
+}
+
+/// Where an instance's things begin and end.
+#[derive(Debug, Clone, PartialEq)]
+struct Placed {
+    elements: Range<usize>,
+    nodes: Range<usize>,
+    root: Option<usize>,
+}
+
+/// An element or cluster as a sender.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// Lowest corner of its box, metres.
+    pub low: DVec3,
+    /// Highest corner of its box, metres.
+    pub high: DVec3,
+    /// Area, m².
+    pub area: f64,
+    /// What lies inside a cluster.
+    pub children: Option<[u32; 2]>,
+    /// The one side of the one face it lies in, if it does.
+    pub side: Option<Side>,
+    /// Its outline, if it is a planar convex polygon; elements always are. Empty if not.
+    pub polygon: Polygon,
+}
+
+/// One side of a face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Side {
+    /// The face.
+    pub face: FaceId,
+    /// Unit normal of this side.
+    pub normal: DVec3,
 }
 
 impl World {
     /// The world of geometries, each moved by its placement (a similarity).
     pub fn new<'a>(placed: impl IntoIterator<Item = (&'a Geometry, DAffine3)>) -> Self {
-        let (mut elements, mut faces, mut instances) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut elements, mut faces, mut nodes, mut instances) = (vec![], vec![], vec![], vec![]);
         for (geometry, placement) in placed {
-            let (first_element, first_face) = (elements.len(), faces.len() as u32);
+            let (first_element, first_face, first_node) = (elements.len(), faces.len() as u32, nodes.len());
             elements.extend(geometry.elements.iter().map(|e| place_element(e, placement, first_face)));
             faces.extend(geometry.faces.iter().map(|face| place_face(face, placement)));
-            instances.push(first_element..elements.len());
+            add_nodes(geometry, &elements[first_element..], &mut nodes);
+            instances.push(Placed {
+                elements: first_element..elements.len(),
+                nodes: first_node..nodes.len(),
+                root: geometry.clusters.root().map(|root| first_node + root),
+            });
         }
         let planes = planes::group(&faces);
-        let groups = groups(&elements, &instances);
-        let index = FaceIndex::new(&faces);
-        Self { elements, faces, planes, groups, index, instances }
+        let occluders = Occluders::new(&faces);
+        Self { elements, faces, planes, nodes, occluders, instances }
     }
 
     /// The elements of the `instance`-th geometry.
     pub fn elements_of(&self, instance: usize) -> Range<usize> {
-        self.instances[instance].clone()
+        self.instances[instance].elements.clone()
+    }
+
+    /// The nodes of the `instance`-th geometry, elements first.
+    pub fn nodes_of(&self, instance: usize) -> Range<usize> {
+        self.instances[instance].nodes.clone()
+    }
+
+    /// The node that holds all of the `instance`-th geometry; none if it is empty.
+    pub fn root_of(&self, instance: usize) -> Option<usize> {
+        self.instances[instance].root
     }
 
     /// Number of geometries.
     pub fn instances(&self) -> usize {
         self.instances.len()
+    }
+
+    /// The instance a node belongs to.
+    pub fn instance_of_node(&self, node: usize) -> usize {
+        self.instances.partition_point(|placed| placed.nodes.end <= node)
+    }
+
+    /// The element of a node, if it is one.
+    pub fn element_of(&self, node: usize) -> Option<usize> {
+        let placed = &self.instances[self.instance_of_node(node)];
+        let number = node - placed.nodes.start;
+        (number < placed.elements.len()).then(|| placed.elements.start + number)
     }
 }
 
@@ -68,21 +128,70 @@ fn place_face(face: &Face, placement: DAffine3) -> Face {
     Face::new(face.corners.iter().map(|&p| placement.transform_point3(p)).collect())
 }
 
-fn groups(elements: &[Element], instances: &[Range<usize>]) -> Vec<Range<usize>> {
-    let mut groups = Vec::new();
-    for instance in instances {
-        let mut start = instance.start;
-        for next in instance.clone().skip(1).chain([instance.end]) {
-            if next == instance.end || !same_side(&elements[start], &elements[next]) {
-                groups.push(start..next);
-                start = next;
-            }
-        }
+/// Append the nodes of one instance, whose placed elements are given.
+fn add_nodes(geometry: &Geometry, elements: &[Element], nodes: &mut Vec<Node>) {
+    let base = nodes.len();
+    let tree = &geometry.clusters;
+    nodes.extend(elements.iter().map(element_node));
+    // Clusters come before what they hold, so the last is complete first.
+    let mut clusters: Vec<Node> = Vec::with_capacity(tree.nodes() - elements.len());
+    let count = tree.nodes();
+    for node in (elements.len()..count).rev() {
+        let pair = tree.children_of(node).expect("a cluster has children");
+        let child = |local: u32| {
+            let local = local as usize;
+            if local < elements.len() { &nodes[base + local] } else { &clusters[count - 1 - local] }
+        };
+        let inner = [child(pair[0]), child(pair[1])];
+        clusters.push(cluster_node(inner, pair.map(|local| base as u32 + local)));
     }
-    groups.retain(|group| !group.is_empty());
-    groups
+    clusters.reverse();
+    nodes.extend(clusters);
 }
 
-fn same_side(a: &Element, b: &Element) -> bool {
-    a.face == b.face && a.normal.dot(b.normal) > 0.0
+fn element_node(element: &Element) -> Node {
+    let corners = element.corners.as_slice();
+    Node {
+        low: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
+        high: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
+        area: element.area,
+        children: None,
+        side: Some(Side { face: element.face, normal: element.normal }),
+        polygon: corners.iter().copied().collect(),
+    }
+}
+
+fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
+    let side = match (left.side, right.side) {
+        (Some(l), Some(r)) if l.face == r.face && l.normal.dot(r.normal) > 0.0 => Some(l),
+        _ => None,
+    };
+    let polygon = side.map_or_else(Polygon::new, |side| union(left, right, side.normal));
+    Node {
+        low: left.low.min(right.low),
+        high: left.high.max(right.high),
+        area: left.area + right.area,
+        children: Some(children),
+        side,
+        polygon,
+    }
+}
+
+/// How far the area of the hull may exceed that of what it is the hull of, relative, to be the same polygon.
+const SAME_AREA: f64 = 1e-9;
+
+/// The union of two polygons in one plane if it is convex, else nothing: their convex hull, if it has their area.
+fn union(left: &Node, right: &Node, normal: DVec3) -> Polygon {
+    if left.polygon.is_empty() || right.polygon.is_empty() {
+        return Polygon::new();
+    }
+    let hull = convex_hull(left.polygon.iter().chain(&right.polygon).copied(), normal);
+    let area = area(&hull);
+    if (area - left.area - right.area).abs() <= SAME_AREA * area { hull } else { Polygon::new() }
+}
+
+fn area(polygon: &[DVec3]) -> f64 {
+    let origin = polygon[0];
+    let double: DVec3 = polygon.windows(2).skip(1).map(|e| (e[0] - origin).cross(e[1] - origin)).sum();
+    double.length() / 2.0
 }

@@ -1,5 +1,6 @@
 //! The geometry that form factors are computed on: elements (one unknown each) and the faces that block light.
 
+use crate::clusters::ClusterTree;
 use crate::ids::{FaceId, MaterialId};
 use crate::rows::Rgb;
 use glam::DVec3;
@@ -133,12 +134,14 @@ impl Face {
 }
 
 /// All that form factors depend on.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Geometry {
     /// The elements; their order is the order of every per-element array.
     pub elements: Vec<Element>,
     /// The faces that the elements lie in.
     pub faces: Vec<Face>,
+    /// The hierarchy of the elements.
+    pub clusters: ClusterTree,
 }
 
 /// What form factors do not depend on: reflectance and emission, one row an element, linear RGB.

@@ -4,6 +4,7 @@
 //! compute on these types; this crate only says what they are and how they lie on disk.
 
 mod baked;
+mod clusters;
 mod container;
 mod error;
 mod fingerprint;
@@ -17,13 +18,14 @@ mod store;
 mod stored;
 
 pub use baked::{BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
+pub use clusters::ClusterTree;
 pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
 pub use error::{Error, Result};
 pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
-pub use rows::{Rgb, Rows};
+pub use rows::{Precision, Rgb, RowGroup, Rows};
 pub use scene::{Camera, Instance, LightKind, PunctualLight, Scene};
 pub use solution::Solution;
 pub use store::{Lookup, Store};

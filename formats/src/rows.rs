@@ -1,65 +1,126 @@
-//! One block of the form-factor matrix, by rows; only what is not zero is kept.
+//! One block of the form-factor matrix, by rows. Neighbouring receivers see the same senders, so rows come in groups
+//! that share one list of columns.
 //!
-//! Row i holds F_ij = (1/π) ∫_{S_j} V cosθ_i cosθ_j / r² dy for the senders j that receiver i can see.
+//! Row i holds F_ij = (1/π) ∫_{S_j} V cosθ_i cosθ_j / r² dy for the senders j that receiver i can see; a sender is an
+//! element, or a cluster of elements (see [`crate::ClusterTree`]) whose form factor is as exact as an element's.
 
 use serde::{Deserialize, Serialize};
 
 /// Red, green, blue; linear, BT.709 primaries.
 pub type Rgb = [f64; 3];
 
-/// A block of exact form factors, `receivers × senders`, compressed sparse rows.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+/// How the numbers of a block are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+pub enum Precision {
+    /// f64, as computed.
+    Full,
+    /// Whole steps of 1/65535 of the row's largest entry. What rounding takes from one entry it gives to the next, so
+    /// that the row's sum is kept to one step.
+    Steps,
+}
+
+/// Rows of neighbouring receivers before they go into a block.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RowGroup {
+    /// The senders that any of the receivers sees.
+    pub columns: Vec<u32>,
+    /// Form factors, `receivers × columns`, by receiver.
+    pub values: Vec<f64>,
+    /// Number of receivers.
+    pub receivers: usize,
+}
+
+/// A block of exact form factors, `receivers × senders`.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     senders: u32,
-    /// Where each row begins in `columns` and `values`; one more than there are rows.
-    starts: Vec<u64>,
+    groups: Vec<Extent>,
     columns: Vec<u32>,
-    values: Vec<f64>,
+    values: Values,
+}
+
+/// Where a group begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Extent {
+    receiver: usize,
+    column: usize,
+    value: usize,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Values {
+    Full(Vec<f64>),
+    Steps { steps: Vec<u16>, unit: Vec<f64> },
+}
+
+/// A block as plain arrays: sizes of the groups, their columns, and the numbers in one of two forms.
+pub(crate) struct Arrays<'a> {
+    pub sizes: Vec<u32>,
+    pub columns: &'a [u32],
+    pub full: &'a [f64],
+    pub steps: &'a [u16],
+    pub units: &'a [f64],
 }
 
 impl Rows {
-    /// A block with `senders` columns from its rows, each a list of (sender, form factor) by rising sender.
+    /// A block with `senders` columns from rows that share nothing, each a list of (sender, form factor).
     pub fn from_rows(senders: usize, rows: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Self {
-        let mut block = Self { senders: senders as u32, starts: vec![0], ..Self::default() };
-        for row in rows {
-            for (column, value) in row {
-                assert!((column as usize) < senders, "sender {column} of {senders}");
-                block.columns.push(column);
-                block.values.push(value);
-            }
-            block.starts.push(block.columns.len() as u64);
+        let group = |row: Vec<(u32, f64)>| {
+            let (columns, values) = row.into_iter().unzip();
+            RowGroup { columns, values, receivers: 1 }
+        };
+        Self::from_groups(senders, rows.into_iter().map(group), Precision::Full)
+    }
+
+    /// A block with `senders` columns from groups of rows, receivers in order.
+    pub fn from_groups(
+        senders: usize,
+        groups: impl IntoIterator<Item = RowGroup>,
+        precision: Precision,
+    ) -> Self {
+        let mut block = Self {
+            senders: senders as u32,
+            groups: vec![Extent { receiver: 0, column: 0, value: 0 }],
+            columns: vec![],
+            values: match precision {
+                Precision::Full => Values::Full(vec![]),
+                Precision::Steps => Values::Steps { steps: vec![], unit: vec![] },
+            },
+        };
+        for group in groups {
+            block.push(group);
         }
         block
     }
 
-    /// A block from its three arrays as [`Rows::arrays`] gives them, or what is wrong with them.
-    pub(crate) fn from_arrays(
-        senders: u32,
-        starts: Vec<u64>,
-        columns: Vec<u32>,
-        values: Vec<f64>,
-    ) -> Result<Self, String> {
-        if columns.len() != values.len() {
-            return Err(format!("{} columns for {} form factors", columns.len(), values.len()));
+    fn push(&mut self, group: RowGroup) {
+        assert_eq!(
+            group.values.len(),
+            group.columns.len() * group.receivers,
+            "a value a receiver and column"
+        );
+        assert!(group.columns.iter().all(|&c| c < self.senders), "a column past {} senders", self.senders);
+        let end = self.groups[self.groups.len() - 1];
+        self.groups.push(Extent {
+            receiver: end.receiver + group.receivers,
+            column: end.column + group.columns.len(),
+            value: end.value + group.values.len(),
+        });
+        match &mut self.values {
+            Values::Full(values) => values.extend_from_slice(&group.values),
+            Values::Steps { steps, unit } => {
+                for receiver in 0..group.receivers {
+                    let row = &group.values[receiver * group.columns.len()..][..group.columns.len()];
+                    unit.push(quantise(row, steps));
+                }
+            }
         }
-        if starts.first() != Some(&0) || starts.last() != Some(&(values.len() as u64)) || !starts.is_sorted()
-        {
-            return Err(format!("rows that do not divide {} form factors", values.len()));
-        }
-        match columns.iter().find(|&&column| column >= senders) {
-            Some(column) => Err(format!("sender {column} of {senders}")),
-            None => Ok(Self { senders, starts, columns, values }),
-        }
-    }
-
-    /// Where each row begins (and the last ends), the columns, and the values.
-    pub(crate) fn arrays(&self) -> (&[u64], &[u32], &[f64]) {
-        (&self.starts, &self.columns, &self.values)
+        self.columns.extend_from_slice(&group.columns);
     }
 
     /// Number of rows.
     pub fn receivers(&self) -> usize {
-        self.starts.len() - 1
+        self.groups[self.groups.len() - 1].receiver
     }
 
     /// Number of columns.
@@ -69,18 +130,44 @@ impl Rows {
 
     /// Number of stored form factors.
     pub fn stored(&self) -> usize {
-        self.values.len()
+        self.groups[self.groups.len() - 1].value
+    }
+
+    /// How the numbers are kept.
+    pub fn precision(&self) -> Precision {
+        match self.values {
+            Values::Full(_) => Precision::Full,
+            Values::Steps { .. } => Precision::Steps,
+        }
     }
 
     /// Bytes the block takes in memory.
     pub fn bytes(&self) -> usize {
-        self.starts.len() * 8 + self.stored() * 12
+        let values = match &self.values {
+            Values::Full(values) => values.len() * 8,
+            Values::Steps { steps, unit } => steps.len() * 2 + unit.len() * 8,
+        };
+        self.groups.len() * size_of::<Extent>() + self.columns.len() * 4 + values
     }
 
-    /// The (sender, form factor) pairs of one row.
+    /// Number of groups; groups are independent and together give all rows in order.
+    pub fn groups(&self) -> usize {
+        self.groups.len() - 1
+    }
+
+    /// The receivers of a group.
+    pub fn receivers_of(&self, group: usize) -> std::ops::Range<usize> {
+        self.groups[group].receiver..self.groups[group + 1].receiver
+    }
+
+    /// The (sender, form factor) pairs of one row that are not zero.
     pub fn row(&self, receiver: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let range = self.starts[receiver] as usize..self.starts[receiver + 1] as usize;
-        self.columns[range.clone()].iter().map(|&c| c as usize).zip(self.values[range].iter().copied())
+        let group = self.groups.partition_point(|g| g.receiver <= receiver) - 1;
+        let columns = self.columns_of(group);
+        let first = self.groups[group].value + (receiver - self.groups[group].receiver) * columns.len();
+        let pairs =
+            columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k, receiver)));
+        pairs.filter(|&(_, value)| value != 0.0)
     }
 
     /// Σ_j F_ij: the fraction of receiver i's view that the senders fill.
@@ -88,15 +175,107 @@ impl Rows {
         self.row(receiver).map(|(_, value)| value).sum()
     }
 
-    /// Σ_j F_ij B_j: the irradiance that senders of radiosity `radiosity` cause at one receiver, W/m².
-    pub fn gather(&self, receiver: usize, radiosity: &[Rgb]) -> Rgb {
-        let mut sum = [0.0; 3];
-        for (sender, value) in self.row(receiver) {
-            let b = &radiosity[sender];
-            for channel in 0..3 {
-                sum[channel] += value * b[channel];
+    /// Irradiance Σ_j F_ij B_j of a group's receivers, W/m², from the radiosity of all senders. The result has one entry
+    /// a receiver of the group.
+    pub fn gather_group(&self, group: usize, radiosity: &[Rgb]) -> Vec<Rgb> {
+        let columns = self.columns_of(group);
+        let seen: Vec<Rgb> = columns.iter().map(|&c| radiosity[c as usize]).collect();
+        let first = self.groups[group].value;
+        let rows = self.receivers_of(group).enumerate();
+        rows.map(|(k, receiver)| {
+            let range = first + k * seen.len()..first + (k + 1) * seen.len();
+            match &self.values {
+                Values::Full(values) => dot(values[range].iter().copied(), &seen),
+                Values::Steps { steps, unit } => {
+                    dot(steps[range].iter().map(|&s| f64::from(s)), &seen).map(|sum| sum * unit[receiver])
+                }
             }
-        }
-        sum
+        })
+        .collect()
     }
+
+    fn columns_of(&self, group: usize) -> &[u32] {
+        &self.columns[self.groups[group].column..self.groups[group + 1].column]
+    }
+
+    fn value(&self, index: usize, receiver: usize) -> f64 {
+        match &self.values {
+            Values::Full(values) => values[index],
+            Values::Steps { steps, unit } => f64::from(steps[index]) * unit[receiver],
+        }
+    }
+
+    pub(crate) fn arrays(&self) -> Arrays<'_> {
+        let sizes = self
+            .groups
+            .windows(2)
+            .flat_map(|g| [(g[1].receiver - g[0].receiver) as u32, (g[1].column - g[0].column) as u32]);
+        let (full, steps, units): (&[f64], &[u16], &[f64]) = match &self.values {
+            Values::Full(values) => (values, &[], &[]),
+            Values::Steps { steps, unit } => (&[], steps, unit),
+        };
+        Arrays { sizes: sizes.collect(), columns: &self.columns, full, steps, units }
+    }
+
+    pub(crate) fn from_arrays(
+        senders: u32,
+        precision: Precision,
+        sizes: &[u32],
+        columns: Vec<u32>,
+        numbers: (Vec<f64>, Vec<u16>, Vec<f64>),
+    ) -> Result<Self, String> {
+        let (pairs, rest) = sizes.as_chunks::<2>();
+        let mut groups = vec![Extent { receiver: 0, column: 0, value: 0 }];
+        for &[receivers, width] in pairs {
+            let end = groups[groups.len() - 1];
+            groups.push(Extent {
+                receiver: end.receiver + receivers as usize,
+                column: end.column + width as usize,
+                value: end.value + receivers as usize * width as usize,
+            });
+        }
+        let end = groups[groups.len() - 1];
+        let (full, steps, unit) = numbers;
+        let values = match precision {
+            Precision::Full => Values::Full(full),
+            Precision::Steps => Values::Steps { steps, unit },
+        };
+        let fits = match &values {
+            Values::Full(values) => values.len() == end.value,
+            Values::Steps { steps, unit } => steps.len() == end.value && unit.len() == end.receiver,
+        };
+        if !rest.is_empty() || !fits || columns.len() != end.column {
+            return Err("rows whose groups do not fit their arrays".into());
+        }
+        if let Some(column) = columns.iter().find(|&&c| c >= senders) {
+            return Err(format!("sender {column} of {senders}"));
+        }
+        Ok(Self { senders, groups, columns, values })
+    }
+}
+
+fn dot(row: impl Iterator<Item = f64>, seen: &[Rgb]) -> Rgb {
+    let mut sum = [0.0; 3];
+    for (value, b) in row.zip(seen) {
+        for channel in 0..3 {
+            sum[channel] += value * b[channel];
+        }
+    }
+    sum
+}
+
+/// Append the row in steps of its largest entry; returns the size of a step. The error of each entry goes into the
+/// next (first-order noise shaping), so that partial sums are never off by more than half a step.
+fn quantise(row: &[f64], steps: &mut Vec<u16>) -> f64 {
+    let unit = row.iter().copied().fold(0.0, f64::max) / f64::from(u16::MAX);
+    let mut carried = 0.0;
+    for &value in row {
+        let wanted = if unit > 0.0 { value / unit + carried } else { 0.0 };
+        let step = if value > 0.0 { wanted.round().clamp(0.0, f64::from(u16::MAX)) } else { 0.0 };
+        if value > 0.0 {
+            carried = wanted - step;
+        }
+        steps.push(step as u16);
+    }
+    unit
 }

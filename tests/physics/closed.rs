@@ -1,21 +1,10 @@
 //! Closed scenes: every row sums to one, whatever stands in the way, so a furnace is uniform.
 
 use equilux_bake::equilibrium::{LocalSystem, factorise};
-use equilux_bake::form_factor::row::row;
-use equilux_bake::world::World;
-use equilux_formats::{Geometry, LocalSolver, Part, Rows};
-use equilux_tests::shapes::{alone, fine, grey, joined, mesh, moved, part, quad, room, solid};
+use equilux_formats::{LocalSolver, Part, Rows};
+use equilux_tests::shapes::{fine, grey, joined, mesh, moved, part, quad, room, self_block, solid};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
-
-fn block(geometry: &Geometry) -> Rows {
-    block_of(&alone(geometry))
-}
-
-fn block_of(world: &World) -> Rows {
-    let n = world.elements.len();
-    Rows::from_rows(n, (0..n).map(|i| row(world, i, 0..n)))
-}
 
 fn worst_defect(block: &Rows) -> f64 {
     (0..block.receivers()).map(|i| (block.row_sum(i) - 1.0).abs()).fold(0.0, f64::max)
@@ -38,12 +27,13 @@ fn furnished(boxes: &[(DVec3, f64)]) -> Part {
 #[test]
 fn furnace_is_uniform() {
     let geometry = fine(&cube(0.5), 0.2);
-    let block = block(&geometry);
+    let block = self_block(&geometry);
     let n = geometry.elements.len();
     for rho in [0.5, 0.9, 0.999] {
         let (reflectance, emission) = (vec![[rho; 3]; n], vec![[1.0; 3]; n]);
-        let factors = factorise(&block, &reflectance, LocalSolver::Direct);
-        let system = LocalSystem::new(&block, &reflectance, LocalSolver::Direct, factors.as_ref());
+        let factors = factorise(&block, &geometry.clusters, &reflectance, LocalSolver::Direct);
+        let system =
+            LocalSystem::new(&block, &geometry.clusters, &reflectance, LocalSolver::Direct, factors.as_ref());
         let expected = 1.0 / (1.0 - rho);
         for b in system.solve(&emission, &emission) {
             // The row sums' rounding, 1e-15, is multiplied by ρ/(1−ρ), a thousand at most.
@@ -59,7 +49,7 @@ proptest! {
         turns in prop::collection::vec((-1f64..1., -1f64..1., 0.1f64..1., 0f64..6.), 1..4)
     ) {
         let boxes: Vec<_> = turns.iter().map(|&(x, y, z, a)| (dvec3(x, y, z).normalize(), a)).collect();
-        let block = block(&fine(&furnished(&boxes), 0.25));
+        let block = self_block(&fine(&furnished(&boxes), 0.25));
         // A row is the sum of some 300 clipped terms of 1e-16 each.
         prop_assert!(worst_defect(&block) <= 1e-12, "defect {}", worst_defect(&block));
     }
@@ -68,14 +58,14 @@ proptest! {
 #[test]
 fn a_furnished_furnace_is_uniform_with_every_local_solver() {
     let geometry = fine(&furnished(&[(DVec3::Z, 0.5), (dvec3(1., 1., 0.).normalize(), 1.0)]), 0.2);
-    let block = block(&geometry);
+    let block = self_block(&geometry);
     let n = geometry.elements.len();
     let (reflectance, emission) = (vec![[0.9; 3]; n], vec![[1.0; 3]; n]);
     use LocalSolver::*;
     for solver in [Direct, GaussSeidel, Progressive, Iterative] {
-        let factors = factorise(&block, &reflectance, solver);
-        let solution =
-            LocalSystem::new(&block, &reflectance, solver, factors.as_ref()).solve(&emission, &emission);
+        let factors = factorise(&block, &geometry.clusters, &reflectance, solver);
+        let solution = LocalSystem::new(&block, &geometry.clusters, &reflectance, solver, factors.as_ref())
+            .solve(&emission, &emission);
         let worst = solution.iter().map(|b| (b[0] / 10.0 - 1.0).abs()).fold(0.0, f64::max);
         // Rounding of rows and residual, 1e-14, over 1 − ρ.
         assert!(worst <= 1e-12, "{solver:?}: off by {worst}");
@@ -87,7 +77,7 @@ fn a_furnished_furnace_is_uniform_with_every_local_solver() {
 fn averaged(of: impl Fn(DVec3) -> bool) -> f64 {
     let at = |size: f64| {
         let geometry = fine(&cube(0.5), size);
-        let block = block(&geometry);
+        let block = self_block(&geometry);
         let on_floor = |i: usize| geometry.elements[i].normal.z > 0.5;
         let floor: Vec<usize> = (0..geometry.elements.len()).filter(|&i| on_floor(i)).collect();
         let total: f64 = floor
@@ -131,7 +121,7 @@ fn a_sheet_without_thickness_lets_nothing_through() {
     for size in [0.3, 0.17] {
         let geometry =
             fine(&joined([open(lower.clone(), height), open(upper.clone(), height), sheet.clone()]), size);
-        let block = block(&geometry);
+        let block = self_block(&geometry);
         let above = |i: usize| {
             let e = &geometry.elements[i];
             if e.centroid.z == height { e.normal.z > 0.0 } else { e.centroid.z > height }
@@ -149,7 +139,7 @@ fn a_sheet_without_thickness_lets_nothing_through() {
 #[test]
 fn coincident_faces_do_not_add_up() {
     let geometry = mesh(&joined([cube(0.5), room(grey(0.9, 0.0), DVec3::ZERO, DVec3::ONE)]));
-    let block = block(&geometry);
+    let block = self_block(&geometry);
     for i in 0..block.receivers() {
         // Neither of two faces in the same place is before the other: both are seen, and light is counted twice.
         // The importer drops and names such faces; what must hold here is that nothing is worse than twice.
@@ -166,5 +156,5 @@ fn far_from_the_origin_nothing_changes() {
     for element in &mut far.elements {
         element.corners = element.corners.map(|p| p + offset - offset);
     }
-    assert_eq!(block(&near), block(&far), "quarters of a metre are exact a million metres away");
+    assert_eq!(self_block(&near), self_block(&far), "quarters of a metre are exact a million metres away");
 }

@@ -1,8 +1,10 @@
 //! Parts made of quads and boxes.
 
 use equilux_bake::elements::{ElementSize, subdivide};
+use equilux_bake::monitor::Monitor;
+use equilux_bake::treecode::{EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Surface};
+use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rows, Surface};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// A grey material: reflectance and emission the same in all channels.
@@ -108,4 +110,16 @@ pub fn fine(part: &Part, size: f64) -> Geometry {
 /// A world of that geometry alone.
 pub fn alone(geometry: &Geometry) -> World {
     World::new([(geometry, DAffine3::IDENTITY)])
+}
+
+/// The block from one instance to others of a world; columns count through the nodes of all.
+pub fn coupling(world: &World, receivers: usize, senders: &[usize], resolution: Resolution) -> Rows {
+    let columns = 0..world.nodes.len();
+    let request = Request { world, receivers, senders, columns, already: None, resolution };
+    block(&request, &Monitor::default()).expect("nobody stops it").block
+}
+
+/// The exact block of a geometry alone.
+pub fn self_block(geometry: &Geometry) -> Rows {
+    coupling(&alone(geometry), 0, &[0], EXACT)
 }

@@ -40,7 +40,16 @@ impl Margin {
     /// No radiosity is further than this from the exact solution, W/m²; infinite where nothing can be proved.
     pub fn bound(&self, residual: &[Vec<Rgb>]) -> f64 {
         let pairs = self.0.iter().flatten().flatten().zip(residual.iter().flatten().flatten());
-        pairs.map(|(&margin, &r)| if r == 0.0 { 0.0 } else if margin > 0.0 { r.abs() / margin } else { f64::INFINITY })
+        pairs
+            .map(|(&margin, &r)| {
+                if r == 0.0 {
+                    0.0
+                } else if margin > 0.0 {
+                    r.abs() / margin
+                } else {
+                    f64::INFINITY
+                }
+            })
             .fold(0.0, f64::max)
     }
 }

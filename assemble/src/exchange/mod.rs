@@ -10,7 +10,7 @@ use crate::placed::Placed;
 use bound::{Margin, residual};
 use equilux_bake::equilibrium::{LocalSystem, added, largest, scaled};
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Optics, Rgb, Rows};
+use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
 use std::time::{Duration, Instant};
 
 /// In which order parts hear of each other.
@@ -37,7 +37,9 @@ pub struct Node<'a> {
     pub optics: Optics,
     /// F_kk in the scene.
     pub self_block: &'a Rows,
-    /// F_kl for l ≠ k; columns count through all elements.
+    /// The hierarchy of the part's elements.
+    pub clusters: &'a ClusterTree,
+    /// F_kl for l ≠ k; columns count through all nodes of the scene.
     pub coupling: &'a Rows,
     /// Solves the instance on its own.
     pub local: LocalSystem<'a>,
@@ -94,8 +96,20 @@ pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics
             let part = &placed.part_of(k).part;
             let self_block = coupled[k].self_block(&part.self_block);
             let factors = coupled[k].factors(&part.local);
-            let local = LocalSystem::new(self_block, &optics[k].reflectance, part.local.solver, factors);
-            Node { optics: optics[k].clone(), self_block, coupling: &coupled[k].coupling, local }
+            let local = LocalSystem::new(
+                self_block,
+                &part.geometry.clusters,
+                &optics[k].reflectance,
+                part.local.solver,
+                factors,
+            );
+            Node {
+                optics: optics[k].clone(),
+                self_block,
+                clusters: &part.geometry.clusters,
+                coupling: &coupled[k].coupling,
+                local,
+            }
         })
         .collect()
 }
@@ -106,7 +120,8 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
     let margin = Margin::of(nodes);
     let mut state = sweep::State::dark(nodes);
     let mut rounds: Vec<Round> = Vec::new();
-    let mut times = StepTimes { solve: vec![Duration::ZERO; nodes.len()], transfer: vec![Duration::ZERO; nodes.len()] };
+    let mut times =
+        StepTimes { solve: vec![Duration::ZERO; nodes.len()], transfer: vec![Duration::ZERO; nodes.len()] };
     let mut converged = false;
     monitor.begin("exchange", 0);
     while rounds.len() < goal.rounds && !converged && !monitor.stopped() {

@@ -1,7 +1,7 @@
 //! One round of the exchange: transfers (steps 7, 8) and local equilibria (steps 5, 6).
 
 use super::{Node, StepTimes, sources};
-use equilux_bake::equilibrium::added;
+use equilux_bake::equilibrium::{added, apply};
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -26,6 +26,13 @@ impl State {
         self.radiosity.concat()
     }
 
+    /// The radiosity of all nodes of the scene.
+    fn nodes(&self, nodes: &[Node]) -> Vec<Rgb> {
+        let mut all = Vec::new();
+        nodes.iter().zip(&self.radiosity).for_each(|(node, b)| node.clusters.append_means(b, &mut all));
+        all
+    }
+
     /// Every part to its equilibrium with what arrived, then every transfer.
     pub fn jacobi(&mut self, nodes: &[Node], times: &mut StepTimes) {
         let solve = |(k, node): (usize, &Node)| {
@@ -43,8 +50,8 @@ impl State {
     /// One part after the other, each with the newest light of all others.
     pub fn gauss_seidel(&mut self, nodes: &[Node], times: &mut StepTimes) {
         for (k, node) in nodes.iter().enumerate() {
-            let all = self.flat();
-            let (arriving, time) = timed(|| gather(node.coupling, &all));
+            let all = self.nodes(nodes);
+            let (arriving, time) = timed(|| apply(node.coupling, &all));
             times.transfer[k] += time;
             let (b, time) = timed(|| node.local.solve(&sources(&node.optics, &arriving), &self.radiosity[k]));
             times.solve[k] += time;
@@ -55,8 +62,8 @@ impl State {
     }
 
     fn transfer(&mut self, nodes: &[Node]) -> Vec<Duration> {
-        let all = self.flat();
-        let arrived = nodes.iter().map(|node| timed(|| gather(node.coupling, &all)));
+        let all = self.nodes(nodes);
+        let arrived = nodes.iter().map(|node| timed(|| apply(node.coupling, &all)));
         let (arriving, times) = arrived.unzip();
         self.arriving = arriving;
         times
@@ -64,18 +71,16 @@ impl State {
 
     /// Irradiance from all instances, as of the last transfer.
     pub fn irradiance(&self, nodes: &[Node]) -> Vec<Vec<Rgb>> {
-        let own = |node: &Node, b: &[Rgb]| gather(node.self_block, b);
+        let own = |node: &Node, b: &[Rgb]| node.local.irradiance(b);
         nodes
             .iter()
             .zip(&self.radiosity)
             .zip(&self.arriving)
-            .map(|((node, b), arriving)| own(node, b).iter().zip(arriving).map(|(&o, &a)| added(o, a)).collect())
+            .map(|((node, b), arriving)| {
+                own(node, b).iter().zip(arriving).map(|(&o, &a)| added(o, a)).collect()
+            })
             .collect()
     }
-}
-
-fn gather(block: &equilux_formats::Rows, radiosity: &[Rgb]) -> Vec<Rgb> {
-    (0..block.receivers()).into_par_iter().map(|i| block.gather(i, radiosity)).collect()
 }
 
 fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {

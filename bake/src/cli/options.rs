@@ -3,6 +3,7 @@
 use crate::bisect::Cut;
 use crate::elements::ElementSize;
 use crate::prepare::{Division, Preparation};
+use crate::treecode::EXACT;
 use clap::{Args, ValueEnum};
 use equilux_formats::LocalSolver;
 use std::path::PathBuf;
@@ -69,7 +70,7 @@ impl SceneOptions {
             None => Division::Cuts(self.cut.clone()),
         };
         let local_solver = self.local_solver.map(LocalSolver::from);
-        Preparation { element_size: self.element_size, division, local_solver }
+        Preparation { element_size: self.element_size, division, resolution: EXACT, local_solver }
     }
 
     /// Use the number of threads asked for.

@@ -1,21 +1,21 @@
 //! LU factors of I − ρF, one a distinct channel, and solves with them. faer, sequential: its bits do not depend on
 //! the number of threads, and parts are factored side by side.
 
-use equilux_formats::{Factors, Lu, Rgb, Rows};
+use equilux_formats::{ClusterTree, Factors, Lu, Rgb, Rows};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
 use faer::linalg::triangular_solve::{solve_unit_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::{Mat, MatRef, Par};
 
 /// Factor I − ρF for every distinct channel of ρ.
-pub fn factorise(block: &Rows, reflectance: &[Rgb]) -> Factors {
+pub fn factorise(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb]) -> Factors {
     let mut channels = Vec::new();
     let mut of_channel = [0u32; 3];
     for c in 0..3 {
         let twin = (0..c).find(|&d| reflectance.iter().all(|rho| rho[c] == rho[d]));
         of_channel[c] = twin.map_or_else(
             || {
-                channels.push(lu(block, reflectance, c));
+                channels.push(lu(block, clusters, reflectance, c));
                 channels.len() as u32 - 1
             },
             |twin| of_channel[twin],
@@ -24,12 +24,13 @@ pub fn factorise(block: &Rows, reflectance: &[Rgb]) -> Factors {
     Factors { channels, of_channel }
 }
 
-fn lu(block: &Rows, reflectance: &[Rgb], channel: usize) -> Lu {
+fn lu(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb], channel: usize) -> Lu {
     let n = block.receivers();
     let mut matrix = Mat::<f64>::identity(n, n);
     for i in 0..n {
-        for (j, value) in block.row(i) {
-            matrix[(i, j)] -= reflectance[i][channel] * value;
+        for (node, value) in block.row(i) {
+            let value = reflectance[i][channel] * value;
+            clusters.spread(node, &mut |j, share| matrix[(i, j)] -= value * share);
         }
     }
     let (mut rows, mut inverse) = (vec![0u32; n], vec![0u32; n]);

@@ -1,16 +1,13 @@
 //! Light that never ends: elements that see only each other, absorb nothing, and emit have no equilibrium.
 
-use equilux_formats::{Optics, Rows};
+use equilux_formats::{ClusterTree, Optics, Rows};
 
 /// Losses below this are rounding of the row sums, not light that gets away.
 const NO_LOSS: f64 = 1e-12;
 
 /// The first element of a group that exchanges light only among itself, reflects all of it in some channel and emits
-/// in that channel. `rows(i)` yields (sender, form factor) of element i over all elements.
-pub fn endless_light<'a, R>(optics: &Optics, rows: impl Fn(usize) -> R) -> Option<usize>
-where
-    R: Iterator<Item = (usize, f64)> + 'a,
-{
+/// in that channel. `rows(i)` lists (sender, form factor) of element i over all elements.
+pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>) -> Option<usize> {
     let n = optics.reflectance.len();
     // Almost every scene absorbs something everywhere: then there is nothing to look for.
     if optics.reflectance.iter().all(|rho| rho.iter().all(|&r| r < 1.0 - NO_LOSS)) {
@@ -42,8 +39,14 @@ where
 }
 
 /// The same for one block.
-pub fn endless_in_block(optics: &Optics, block: &Rows) -> Option<usize> {
-    endless_light(optics, |i| block.row(i))
+pub fn endless_in_block(optics: &Optics, block: &Rows, clusters: &ClusterTree) -> Option<usize> {
+    endless_light(optics, |i| {
+        let mut row = Vec::new();
+        for (node, value) in block.row(i) {
+            clusters.spread(node, &mut |element, share| row.push((element, value * share)));
+        }
+        row
+    })
 }
 
 fn find(group: &mut [usize], mut i: usize) -> usize {

@@ -1,37 +1,57 @@
 //! Gauss-Seidel: B_i ← q_i + ρ_i Σ_j F_ij B_j, each element at once with the newest values. Cohen & Wallace 1993,
 //! ch. 5.3.
 
-use super::{ROUNDING, added, largest, scaled};
-use equilux_formats::{Rgb, Rows};
+use super::{LocalSystem, ROUNDING, added, largest, scaled, subtract};
+use equilux_formats::Rgb;
 
 /// Sweeps after which a change below 1e-12 that no longer shrinks is taken for rounding.
 const PATIENCE: usize = 10;
 
 /// Sweep until the changes are rounding.
-pub fn solve(block: &Rows, reflectance: &[Rgb], sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
-    let mut b = guess.to_vec();
+pub fn solve(system: &LocalSystem, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
+    let mut nodes = system.clusters.means(guess);
     let (mut best, mut since_best) = (f64::INFINITY, 0);
     loop {
-        let change = sweep(block, reflectance, sources, &mut b);
+        let change = sweep(system, sources, &mut nodes);
         if change < best * 0.99 {
             (best, since_best) = (change, 0);
         } else {
             since_best += 1;
         }
         if change <= ROUNDING || (since_best >= PATIENCE && change <= 1e-12) {
-            return b;
+            nodes.truncate(sources.len());
+            return nodes;
         }
     }
 }
 
-/// One sweep; returns the largest change relative to the channel's largest radiosity.
-fn sweep(block: &Rows, reflectance: &[Rgb], sources: &[Rgb], b: &mut [Rgb]) -> f64 {
-    let mut change = [0.0f64; 3];
-    for i in 0..b.len() {
-        let new = added(sources[i], scaled(reflectance[i], block.gather(i, b)));
-        change = std::array::from_fn(|c| change[c].max((new[c] - b[i][c]).abs()));
-        b[i] = new;
+/// One sweep over the elements; the clusters around each are kept up to date. Returns the largest change relative to
+/// the channel's largest radiosity.
+fn sweep(system: &LocalSystem, sources: &[Rgb], nodes: &mut [Rgb]) -> f64 {
+    let mut most_change = [0.0f64; 3];
+    for (i, &source) in sources.iter().enumerate() {
+        let irradiance = gather(system, i, nodes);
+        let new = added(source, scaled(system.reflectance[i], irradiance));
+        let change = subtract(new, nodes[i]);
+        most_change = std::array::from_fn(|c| most_change[c].max(change[c].abs()));
+        nodes[i] = new;
+        raise_clusters(system, i, change, nodes);
     }
-    let most = largest(b);
-    (0..3).map(|c| if change[c] == 0.0 { 0.0 } else { change[c] / most[c] }).fold(0.0, f64::max)
+    let most = largest(&nodes[..sources.len()]);
+    (0..3).map(|c| if most_change[c] == 0.0 { 0.0 } else { most_change[c] / most[c] }).fold(0.0, f64::max)
+}
+
+fn gather(system: &LocalSystem, receiver: usize, nodes: &[Rgb]) -> Rgb {
+    let row = system.block.row(receiver);
+    row.fold([0.0; 3], |sum, (node, value)| added(sum, nodes[node].map(|b| b * value)))
+}
+
+fn raise_clusters(system: &LocalSystem, element: usize, change: Rgb, nodes: &mut [Rgb]) {
+    let area = system.clusters.area_of(element);
+    let mut node = element;
+    while let Some(parent) = system.clusters.parent_of(node) {
+        let share = area / system.clusters.area_of(parent);
+        nodes[parent] = added(nodes[parent], change.map(|c| c * share));
+        node = parent;
+    }
 }

@@ -10,7 +10,8 @@ mod gauss_seidel;
 pub mod krylov;
 mod progressive;
 
-use equilux_formats::{Factors, LocalSolver, Rgb, Rows};
+use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
+use rayon::prelude::*;
 use std::sync::OnceLock;
 
 /// Up to this many elements the direct solver is chosen when nobody chooses: its n³/3 then costs less than a second,
@@ -28,6 +29,7 @@ pub fn default_solver(elements: usize) -> LocalSolver {
 /// One part's own equation, ready to be solved again and again.
 pub struct LocalSystem<'a> {
     block: &'a Rows,
+    clusters: &'a ClusterTree,
     reflectance: &'a [Rgb],
     solver: LocalSolver,
     factors: Option<&'a Factors>,
@@ -38,13 +40,15 @@ impl<'a> LocalSystem<'a> {
     /// The system of a square block. The direct solver needs `factors`, as [`factorise`] makes them.
     pub fn new(
         block: &'a Rows,
+        clusters: &'a ClusterTree,
         reflectance: &'a [Rgb],
         solver: LocalSolver,
         factors: Option<&'a Factors>,
     ) -> Self {
-        assert_eq!(block.receivers(), block.senders(), "a part's own block is square");
+        assert_eq!(block.receivers(), clusters.elements(), "a row an element");
+        assert_eq!(block.senders(), clusters.nodes(), "a column a node");
         assert_eq!(block.receivers(), reflectance.len(), "one reflectance an element");
-        Self { block, reflectance, solver, factors, columns: OnceLock::new() }
+        Self { block, clusters, reflectance, solver, factors, columns: OnceLock::new() }
     }
 
     /// The radiosity B that solves (I − ρF) B = `sources`, starting from `guess`; both W/m², one row an element.
@@ -57,30 +61,44 @@ impl<'a> LocalSystem<'a> {
                 let factors = self.factors.expect("the direct solver is given its factors");
                 direct::solve(factors, sources)
             }
-            LocalSolver::GaussSeidel => gauss_seidel::solve(self.block, self.reflectance, sources, guess),
+            LocalSolver::GaussSeidel => gauss_seidel::solve(self, sources, guess),
             LocalSolver::Progressive => {
                 let columns = self.columns.get_or_init(|| progressive::Columns::of(self.block));
-                progressive::solve(self.block, columns, self.reflectance, sources, guess)
+                progressive::solve(self, columns, sources, guess)
             }
             LocalSolver::Iterative => self.iterate(sources, guess),
         }
     }
 
+    /// F B of the part on its own, W/m².
+    pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
+        apply(self.block, &self.clusters.means(radiosity))
+    }
+
     fn iterate(&self, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
-        let apply = |b: &[Rgb]| -> Vec<Rgb> {
-            (0..b.len())
-                .map(|i| subtract(b[i], scaled(self.reflectance[i], self.block.gather(i, b))))
-                .collect()
+        let without_reflection = |b: &[Rgb]| -> Vec<Rgb> {
+            let irradiance = self.irradiance(b);
+            (0..b.len()).map(|i| subtract(b[i], scaled(self.reflectance[i], irradiance[i]))).collect()
         };
         let mut solution = guess.to_vec();
-        krylov::gmres(apply, |r| r.to_vec(), sources, &mut solution, ROUNDING);
+        krylov::gmres(without_reflection, |r| r.to_vec(), sources, &mut solution, ROUNDING);
         solution
     }
 }
 
 /// The LU factors of I − ρF, if the solver wants them kept.
-pub fn factorise(block: &Rows, reflectance: &[Rgb], solver: LocalSolver) -> Option<Factors> {
-    (solver == LocalSolver::Direct).then(|| direct::factorise(block, reflectance))
+pub fn factorise(
+    block: &Rows,
+    clusters: &ClusterTree,
+    reflectance: &[Rgb],
+    solver: LocalSolver,
+) -> Option<Factors> {
+    (solver == LocalSolver::Direct).then(|| direct::factorise(block, clusters, reflectance))
+}
+
+/// The irradiance of all receivers of a block, W/m², from the radiosity of all its nodes.
+pub fn apply(block: &Rows, nodes: &[Rgb]) -> Vec<Rgb> {
+    (0..block.groups()).into_par_iter().flat_map_iter(|group| block.gather_group(group, nodes)).collect()
 }
 
 /// a × b, channel by channel.

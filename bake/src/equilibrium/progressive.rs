@@ -1,10 +1,10 @@
 //! Progressive refinement: the element with the most unshot radiosity shoots first (Southwell relaxation). Cohen,
 //! Chen, Wallace & Greenberg 1988; Gortler & Cohen 1993 for the equivalence with Southwell.
 
-use super::{ROUNDING, added, largest, scaled, subtract};
+use super::{LocalSystem, ROUNDING, added, largest, scaled, subtract};
 use equilux_formats::{Rgb, Rows};
 
-/// The block by columns: for each sender the receivers that see it.
+/// The block by columns: for each node the receivers that see it.
 pub struct Columns {
     starts: Vec<usize>,
     entries: Vec<(u32, f64)>,
@@ -36,20 +36,15 @@ impl Columns {
 }
 
 /// Shoot until what is unshot is rounding.
-pub fn solve(
-    block: &Rows,
-    columns: &Columns,
-    reflectance: &[Rgb],
-    sources: &[Rgb],
-    guess: &[Rgb],
-) -> Vec<Rgb> {
+pub fn solve(system: &LocalSystem, columns: &Columns, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
     let mut b = guess.to_vec();
     // Updates gather rounding over many shots: the residual is taken afresh until it is small at the start.
     loop {
+        let irradiance = system.irradiance(&b);
         let mut unshot: Vec<Rgb> = (0..b.len())
-            .map(|i| subtract(added(sources[i], scaled(reflectance[i], block.gather(i, &b))), b[i]))
+            .map(|i| subtract(added(sources[i], scaled(system.reflectance[i], irradiance[i])), b[i]))
             .collect();
-        let shots = shoot(columns, reflectance, &mut b, &mut unshot);
+        let shots = shoot(system, columns, &mut b, &mut unshot);
         if shots == 0 {
             return b;
         }
@@ -57,7 +52,7 @@ pub fn solve(
 }
 
 /// Shoot until no channel has more than rounding left; returns the number of shots.
-fn shoot(columns: &Columns, reflectance: &[Rgb], b: &mut [Rgb], unshot: &mut [Rgb]) -> usize {
+fn shoot(system: &LocalSystem, columns: &Columns, b: &mut [Rgb], unshot: &mut [Rgb]) -> usize {
     let start = largest(b);
     let scale: Rgb = std::array::from_fn(|c| start[c].max(largest(unshot)[c]).max(f64::MIN_POSITIVE));
     let share = |r: &Rgb| (0..3).map(|c| r[c].abs() / scale[c]).fold(0.0, f64::max);
@@ -72,10 +67,21 @@ fn shoot(columns: &Columns, reflectance: &[Rgb], b: &mut [Rgb], unshot: &mut [Rg
         }
         let shot = std::mem::take(&mut unshot[brightest]);
         b[brightest] = added(b[brightest], shot);
-        for &(receiver, value) in columns.column(brightest) {
-            let i = receiver as usize;
-            unshot[i] = added(unshot[i], scaled(reflectance[i], shot.map(|s| s * value)));
-        }
+        shoot_one(system, columns, brightest, shot, unshot);
     }
     unreachable!("the loop above ends only by returning")
+}
+
+/// Send the shot to all that see the element itself or a cluster around it.
+fn shoot_one(system: &LocalSystem, columns: &Columns, element: usize, shot: Rgb, unshot: &mut [Rgb]) {
+    let area = system.clusters.area_of(element);
+    let mut node = Some(element);
+    while let Some(sender) = node {
+        let share = shot.map(|s| s * area / system.clusters.area_of(sender));
+        for &(receiver, value) in columns.column(sender) {
+            let i = receiver as usize;
+            unshot[i] = added(unshot[i], scaled(system.reflectance[i], share.map(|s| s * value)));
+        }
+        node = system.clusters.parent_of(sender);
+    }
 }

@@ -3,6 +3,7 @@
 //! All points are relative to the receiver's collocation point, so every plane of a pyramid passes through the
 //! origin and is given by its normal alone.
 
+use super::plain::IN_PLANE;
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -48,8 +49,19 @@ pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
 /// The pyramid of directions that a convex occluder hides from the origin.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    /// Normals of the planes through the origin and one edge each, pointing inwards.
+    /// Normals of the planes through the origin and one edge each, pointing inwards. Without any everything is hidden.
     planes: Polygon,
+}
+
+/// How a pyramid lies to a polygon.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hides {
+    /// Nothing of it.
+    Nothing,
+    /// Perhaps a piece of it.
+    Part,
+    /// All of it.
+    All,
 }
 
 impl Pyramid {
@@ -64,7 +76,49 @@ impl Pyramid {
                 a.cross(b - a) * facing
             })
             .collect();
-        Self { planes }
+        Self::between(planes)
+    }
+
+    /// The pyramid between planes through the origin, normals inwards, of any length.
+    pub fn between(planes: Polygon) -> Self {
+        Self { planes: planes.into_iter().map(DVec3::normalize).collect() }
+    }
+
+    /// How the pyramid lies to `polygon`. Corners within [`IN_PLANE`] of a side count as in it, so that a polygon that
+    /// shares an edge with the silhouette is hidden, or not, exactly.
+    pub fn hides(&self, polygon: &[DVec3]) -> Hides {
+        let reach = polygon.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
+        let slack = IN_PLANE * reach;
+        let mut all = true;
+        for plane in &self.planes {
+            let (low, high) = polygon.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+                let distance = plane.dot(*p);
+                (low.min(distance), high.max(distance))
+            });
+            if high <= slack {
+                return Hides::Nothing;
+            }
+            all &= low >= -slack;
+        }
+        if all { Hides::All } else { Hides::Part }
+    }
+
+    /// How many corners of `polygon` lie inside.
+    pub fn corners_inside(&self, polygon: &[DVec3]) -> usize {
+        polygon.iter().filter(|p| self.planes.iter().all(|plane| plane.dot(**p) >= 0.0)).count()
+    }
+
+    /// The piece of `polygon` inside, if there is one.
+    pub fn intersect(&self, polygon: &[DVec3]) -> Option<Polygon> {
+        let mut inside: Polygon = polygon.iter().copied().collect();
+        for plane in &self.planes {
+            match clip(&inside, |p| plane.dot(p)) {
+                Side::All => {}
+                Side::None => return None,
+                Side::Piece(piece) => inside = piece,
+            }
+        }
+        Some(inside)
     }
 
     /// Whether `polygon` surely has nothing inside: it lies wholly behind one of the planes.
@@ -99,4 +153,31 @@ impl Pyramid {
             }
         }
     }
+}
+
+/// The convex hull of points in a plane, counter-clockwise around `normal`, without corners that bend by rounding only
+/// (Andrew 1979).
+pub fn convex_hull(points: impl Iterator<Item = DVec3>, normal: DVec3) -> Polygon {
+    let (u, v) = normal.any_orthonormal_pair();
+    let mut sorted: Polygon = points.collect();
+    sorted.sort_by(|a, b| a.dot(u).total_cmp(&b.dot(u)).then(a.dot(v).total_cmp(&b.dot(v))));
+    let turns_left = |a: DVec3, b: DVec3, c: DVec3| {
+        let (ab, bc) = (b - a, c - b);
+        let limit = 1e-9 * ab.length() * bc.length();
+        ab.dot(u) * bc.dot(v) - ab.dot(v) * bc.dot(u) > limit
+    };
+    let half = |points: &mut dyn Iterator<Item = DVec3>| {
+        let mut chain = Polygon::new();
+        for p in points {
+            while chain.len() >= 2 && !turns_left(chain[chain.len() - 2], chain[chain.len() - 1], p) {
+                chain.pop();
+            }
+            chain.push(p);
+        }
+        chain.pop();
+        chain
+    };
+    let mut hull = half(&mut sorted.iter().copied());
+    hull.extend(half(&mut sorted.iter().rev().copied()));
+    hull
 }

@@ -1,47 +1,94 @@
-//! Who may stand between two places: a bounding-volume hierarchy over faces, and rays for pictures and cross-checks.
+//! Who may stand between two places: a hierarchy of boxes, and rays for pictures and cross-checks.
 //!
-//! obvhs computes in f32, so boxes are padded outwards and a candidate is only ever a candidate: exact clipping in
-//! f64 decides. No type of obvhs leaves this module.
+//! obvhs builds the hierarchies in f32; boxes are then taken anew in f64, and exact clipping decides everything. No
+//! type of obvhs leaves this module.
 
 pub mod rays;
 
-use equilux_formats::Face;
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 
-/// Finds the faces that a region may touch.
-pub struct FaceIndex {
-    bvh: Option<Bvh2>,
-    centre: DVec3,
-    padding: f32,
+/// A binary hierarchy of boxes around things.
+pub struct BoxTree {
+    nodes: Vec<BoxNode>,
+    things: Vec<u32>,
 }
 
-impl FaceIndex {
-    /// An index over `faces`; what it returns are positions in that slice.
-    pub fn new(faces: &[Face]) -> Self {
-        let (centre, padding) = frame(faces.iter().flat_map(|face| face.corners.iter().copied()));
-        let boxes: Vec<Box3> =
-            faces.iter().map(|face| Box3(bounds(&face.corners, centre, padding))).collect();
-        Self { bvh: build(&boxes), centre, padding }
-    }
-
-    /// Append to `found` every face whose box touches the box around `region`, by rising index.
-    pub fn candidates(&self, region: impl Iterator<Item = DVec3>, found: &mut Vec<u32>) {
-        let Some(bvh) = &self.bvh else { return };
-        let region: Vec<DVec3> = region.collect();
-        bvh.aabb_traverse(bounds(&region, self.centre, self.padding), |bvh, node| {
-            let node = &bvh.nodes[node as usize];
-            let range = node.first_index as usize..(node.first_index + node.prim_count) as usize;
-            found.extend_from_slice(&bvh.primitive_indices[range]);
-            true
-        });
-        found.sort_unstable();
-    }
+/// A box and what it holds.
+#[derive(Debug, Clone, Copy)]
+pub struct BoxNode {
+    /// Lowest corner.
+    pub low: DVec3,
+    /// Highest corner.
+    pub high: DVec3,
+    first: u32,
+    /// Number of things in a leaf; none in an inner node, whose two children stand at `first`.
+    count: u32,
 }
 
+/// What is inside a box.
+pub enum Inside<'a> {
+    /// Two smaller boxes.
+    Boxes([usize; 2]),
+    /// These things.
+    Things(&'a [u32]),
+}
+
+impl BoxTree {
+    /// The hierarchy of things with these boxes (lowest and highest corner).
+    pub fn new(boxes: &[(DVec3, DVec3)]) -> Self {
+        let (centre, padding) = frame(boxes.iter().flat_map(|&(low, high)| [low, high]));
+        let rounded: Vec<Box3> =
+            boxes.iter().map(|&(low, high)| Box3(bounds(&[low, high], centre, padding))).collect();
+        let Some(bvh) = build(&rounded) else { return Self { nodes: vec![], things: vec![] } };
+        let node = |n: &obvhs::bvh2::node::Bvh2Node| BoxNode {
+            low: DVec3::INFINITY,
+            high: DVec3::NEG_INFINITY,
+            first: n.first_index,
+            count: n.prim_count,
+        };
+        let mut tree = Self { nodes: bvh.nodes.iter().map(node).collect(), things: bvh.primitive_indices };
+        tree.fit(0, boxes);
+        tree
+    }
+
+    /// The box around everything; none if there is nothing.
+    pub fn root(&self) -> Option<usize> {
+        (!self.nodes.is_empty()).then_some(0)
+    }
+
+    /// A box.
+    pub fn node(&self, index: usize) -> &BoxNode {
+        &self.nodes[index]
+    }
+
+    /// What a box holds.
+    pub fn inside(&self, index: usize) -> Inside<'_> {
+        let BoxNode { first, count, .. } = self.nodes[index];
+        let first = first as usize;
+        if count == 0 {
+            Inside::Boxes([first, first + 1])
+        } else {
+            Inside::Things(&self.things[first..first + count as usize])
+        }
+    }
+
+    fn fit(&mut self, index: usize, boxes: &[(DVec3, DVec3)]) -> (DVec3, DVec3) {
+        let parts: Vec<(DVec3, DVec3)> = match self.inside(index) {
+            Inside::Things(things) => things.iter().map(|&thing| boxes[thing as usize]).collect(),
+            Inside::Boxes(inner) => inner.map(|i| self.fit(i, boxes)).to_vec(),
+        };
+        let (low, high) = parts
+            .into_iter()
+            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), (low, high)| (l.min(low), h.max(high)));
+        let node = &mut self.nodes[index];
+        (node.low, node.high) = (low, high);
+        (low, high)
+    }
+}
 struct Box3(Aabb);
 
 impl Boundable for Box3 {

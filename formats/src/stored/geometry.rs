@@ -1,9 +1,10 @@
 //! The part file: elements and faces by their corners, and the self block. Normals, centroids and areas are worked
 //! out again from the same corners by the same code, so they come back to the last bit.
 
-use super::rows::{read_rows, write_rows};
+use super::rows::{Meta, read_rows, write_rows};
 use super::{Stored, array_of, check, finite_rows};
 use crate::baked::BakedGeometry;
+use crate::clusters::ClusterTree;
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
@@ -15,9 +16,10 @@ impl Stored for BakedGeometry {
     const KIND: Kind = Kind::Part;
 
     fn write(&self, manifest: &Manifest) -> Writer {
-        let mut writer = Writer::new(Self::KIND, manifest, &());
+        let mut writer = Writer::new(Self::KIND, manifest, &Meta::of(&self.self_block));
         write_elements(&self.geometry.elements, &mut writer);
         write_faces(&self.geometry.faces, &mut writer);
+        writer.array("cluster children", self.geometry.clusters.children().as_flattened());
         write_rows(&self.self_block, &mut writer);
         writer
     }
@@ -25,11 +27,16 @@ impl Stored for BakedGeometry {
     fn read(reader: &mut Reader) -> Result<Self> {
         let faces = read_faces(reader)?;
         let elements = read_elements(reader, faces.len())?;
-        let self_block = read_rows(reader, elements.len() as u32)?;
+        let clusters = read_clusters(reader, &elements)?;
+        let meta = reader.meta()?;
+        let self_block = read_rows(reader, meta)?;
+        check(reader, self_block.senders() == clusters.nodes(), || {
+            format!("{} columns for {} elements and clusters", self_block.senders(), clusters.nodes())
+        })?;
         check(reader, self_block.receivers() == elements.len(), || {
             format!("{} rows for {} elements", self_block.receivers(), elements.len())
         })?;
-        Ok(Self { geometry: Geometry { elements, faces }, self_block })
+        Ok(Self { geometry: Geometry { elements, faces, clusters }, self_block })
     }
 }
 
@@ -60,6 +67,14 @@ fn read_elements(reader: &mut Reader, face_count: usize) -> Result<Vec<Element>>
         elements.push(element);
     }
     Ok(elements)
+}
+
+fn read_clusters(reader: &mut Reader, elements: &[Element]) -> Result<ClusterTree> {
+    let children = reader.array::<u32>("cluster children")?;
+    let (pairs, rest) = children.as_chunks::<2>();
+    check(reader, rest.is_empty(), || "half a cluster".into())?;
+    let areas: Vec<f64> = elements.iter().map(|element| element.area).collect();
+    ClusterTree::new(&areas, pairs.to_vec()).map_err(|problem| reader.damaged(problem))
 }
 
 fn write_faces(faces: &[Face], writer: &mut Writer) {

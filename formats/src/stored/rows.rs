@@ -4,41 +4,66 @@ use super::{Stored, finite_array};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
-use crate::rows::Rows;
+use crate::rows::{Precision, Rows};
 use serde::{Deserialize, Serialize};
 
+/// What is said of a block beside its arrays.
 #[derive(Serialize, Deserialize)]
-struct Meta {
+pub(super) struct Meta {
     senders: u32,
+    precision: Precision,
+}
+
+impl Meta {
+    pub(super) fn of(rows: &Rows) -> Self {
+        Self { senders: rows.senders() as u32, precision: rows.precision() }
+    }
 }
 
 impl Stored for Rows {
     const KIND: Kind = Kind::Coupling;
 
     fn write(&self, manifest: &Manifest) -> Writer {
-        let mut writer = Writer::new(Self::KIND, manifest, &Meta { senders: self.senders() as u32 });
+        let mut writer = Writer::new(Self::KIND, manifest, &Meta::of(self));
         write_rows(self, &mut writer);
         writer
     }
 
     fn read(reader: &mut Reader) -> Result<Self> {
-        let Meta { senders } = reader.meta()?;
-        read_rows(reader, senders)
+        let meta = reader.meta()?;
+        read_rows(reader, meta)
     }
 }
 
-/// The arrays of `rows`; how many senders there are is for the caller to note.
+/// The arrays of `rows`; its [`Meta`] is for the caller to keep. Columns lie close together within a group, so their
+/// differences compress better than they do.
 pub(super) fn write_rows(rows: &Rows, writer: &mut Writer) {
-    let (starts, columns, values) = rows.arrays();
-    writer.array("row starts", starts);
-    writer.array("columns", columns);
-    writer.array("form factors", values);
+    let arrays = rows.arrays();
+    let mut last = 0;
+    let differences: Vec<u32> = arrays
+        .columns
+        .iter()
+        .map(|&column| column.wrapping_sub(std::mem::replace(&mut last, column)))
+        .collect();
+    writer.array("group sizes", &arrays.sizes);
+    writer.array("column differences", &differences);
+    writer.array("form factors", arrays.full);
+    writer.array("steps", arrays.steps);
+    writer.array("step units", arrays.units);
 }
 
 /// The block that [`write_rows`] wrote.
-pub(super) fn read_rows(reader: &mut Reader, senders: u32) -> Result<Rows> {
-    let starts = reader.array("row starts")?;
-    let columns = reader.array("columns")?;
-    let values = finite_array(reader, "form factors")?;
-    Rows::from_arrays(senders, starts, columns, values).map_err(|problem| reader.damaged(problem))
+pub(super) fn read_rows(reader: &mut Reader, meta: Meta) -> Result<Rows> {
+    let sizes: Vec<u32> = reader.array("group sizes")?;
+    let mut columns: Vec<u32> = reader.array("column differences")?;
+    let mut last = 0u32;
+    for column in &mut columns {
+        last = last.wrapping_add(*column);
+        *column = last;
+    }
+    let full = finite_array(reader, "form factors")?;
+    let steps = reader.array("steps")?;
+    let units = finite_array(reader, "step units")?;
+    Rows::from_arrays(meta.senders, meta.precision, &sizes, columns, (full, steps, units))
+        .map_err(|problem| reader.damaged(problem))
 }

@@ -1,0 +1,141 @@
+//! Elements → their hierarchy. First the elements of each face side are halved along the longer side of the face until
+//! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
+//! face sides themselves are halved by place.
+
+use equilux_formats::{ClusterTree, Element, Face, Geometry};
+use glam::DVec3;
+
+/// Steps between places that are smaller than this, relative to the extent, are rounding and no grid line.
+const SAME_LINE: f64 = 1e-6;
+
+/// The geometry of these elements and faces, elements put into the order of their hierarchy.
+pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
+    let mut builder = Builder { elements: &elements, order: vec![], clusters: vec![] };
+    let mut sides = face_sides(&elements);
+    if !sides.is_empty() {
+        builder.halve_sides(&mut sides);
+    }
+    let Builder { order, clusters, .. } = builder;
+    let ordered: Vec<Element> = order.iter().map(|&i| elements[i]).collect();
+    let areas: Vec<f64> = ordered.iter().map(|e| e.area).collect();
+    let count = ordered.len() as u32;
+    let number = |node: &Node| match *node {
+        Node::Element(position) => position,
+        Node::Cluster(number) => count + number,
+    };
+    let children = clusters.iter().map(|pair| [number(&pair[0]), number(&pair[1])]).collect();
+    let clusters = ClusterTree::new(&areas, children).expect("the halves make a tree");
+    Geometry { elements: ordered, faces, clusters }
+}
+
+/// Elements of one side of one face.
+struct Side {
+    elements: Vec<usize>,
+    centre: DVec3,
+}
+
+fn face_sides(elements: &[Element]) -> Vec<Side> {
+    let mut order: Vec<usize> = (0..elements.len()).collect();
+    let mut fronts: std::collections::HashMap<u32, DVec3> = std::collections::HashMap::new();
+    let mut back = vec![false; elements.len()];
+    for (i, element) in elements.iter().enumerate() {
+        let front = *fronts.entry(element.face.0).or_insert(element.normal);
+        back[i] = front.dot(element.normal) < 0.0;
+    }
+    order.sort_by_key(|&i| (elements[i].face, back[i], i));
+    let same = |&a: &usize, &b: &usize| elements[a].face == elements[b].face && back[a] == back[b];
+    let side = |run: &[usize]| Side {
+        elements: run.to_vec(),
+        centre: run.iter().map(|&i| elements[i].centroid).sum::<DVec3>() / run.len() as f64,
+    };
+    order.chunk_by(same).map(side).collect()
+}
+
+#[derive(Clone, Copy)]
+enum Node {
+    Element(u32),
+    Cluster(u32),
+}
+
+struct Builder<'a> {
+    elements: &'a [Element],
+    order: Vec<usize>,
+    clusters: Vec<[Node; 2]>,
+}
+
+impl Builder<'_> {
+    fn halve_sides(&mut self, sides: &mut [Side]) -> Node {
+        if let [side] = sides {
+            let mut elements = std::mem::take(&mut side.elements);
+            let (u, v) = face_axes(&self.elements[elements[0]]);
+            return self.halve_elements(&mut elements, &[u, v]);
+        }
+        let axis = longest(&DVec3::AXES, sides.iter().map(|side| side.centre));
+        sides.sort_by(|a, b| a.centre.dot(axis).total_cmp(&b.centre.dot(axis)));
+        let middle = sides.len() / 2;
+        let (left, right) = sides.split_at_mut(middle);
+        self.cluster(|builder| builder.halve_sides(left), |builder| builder.halve_sides(right))
+    }
+
+    fn halve_elements(&mut self, elements: &mut [usize], axes: &[DVec3]) -> Node {
+        if let [element] = elements {
+            self.order.push(*element);
+            return Node::Element(self.order.len() as u32 - 1);
+        }
+        let all = self.elements;
+        let axis = longest(axes, elements.iter().map(|&i| all[i].centroid));
+        let place = |i: usize| all[i].centroid.dot(axis);
+        elements.sort_by(|&a, &b| place(a).total_cmp(&place(b)).then(a.cmp(&b)));
+        let places: Vec<f64> = elements.iter().map(|&i| place(i)).collect();
+        let (left, right) = elements.split_at_mut(grid_line(&places));
+        self.cluster(
+            |builder| builder.halve_elements(left, axes),
+            |builder| builder.halve_elements(right, axes),
+        )
+    }
+
+    fn cluster(
+        &mut self,
+        left: impl FnOnce(&mut Self) -> Node,
+        right: impl FnOnce(&mut Self) -> Node,
+    ) -> Node {
+        let number = self.clusters.len();
+        // The number is taken before the halves take theirs; the halves themselves are known only afterwards.
+        self.clusters.push([Node::Cluster(0); 2]);
+        let pair = [left(self), right(self)];
+        self.clusters[number] = pair;
+        Node::Cluster(number as u32)
+    }
+}
+
+/// Two axes in the element's plane along the grid it may belong to.
+fn face_axes(element: &Element) -> (DVec3, DVec3) {
+    let corners = element.corners.as_slice();
+    let u = (corners[1] - corners[0]).normalize();
+    (u, element.normal.cross(u))
+}
+
+fn longest(axes: &[DVec3], places: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
+    let extent = |axis: DVec3| {
+        let along = places.clone().map(|p| p.dot(axis));
+        let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
+        high - low
+    };
+    // Axes earlier in the list win ties by rounding.
+    let mut best = (axes[0], extent(axes[0]));
+    for &axis in &axes[1..] {
+        let extent = extent(axis);
+        if extent > best.1 * (1.0 + SAME_LINE) {
+            best = (axis, extent);
+        }
+    }
+    best.0
+}
+
+/// Where to cut the sorted places: the grid line nearest to the middle, or the middle itself.
+fn grid_line(places: &[f64]) -> usize {
+    let (count, middle) = (places.len(), places.len() / 2);
+    let step = SAME_LINE * (places[count - 1] - places[0]);
+    let is_line = |k: usize| k > 0 && k < count && places[k] - places[k - 1] > step;
+    (0..=middle).flat_map(|off| [middle - off, middle + off]).find(|&k| is_line(k)).unwrap_or(middle)
+}
