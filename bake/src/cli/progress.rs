@@ -86,7 +86,9 @@ fn new_bar(what: String, total: u64) -> ProgressBar {
     } else {
         (ProgressBar::new(total), "{msg} [{bar:30}] {percent:>3} %, {eta} left")
     };
-    bar.set_style(ProgressStyle::with_template(template).expect("the template is well formed").progress_chars("=> "));
+    bar.set_style(
+        ProgressStyle::with_template(template).expect("the template is well formed").progress_chars("=> "),
+    );
     bar.set_message(what);
     bar
 }
