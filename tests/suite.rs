@@ -1,3 +1,8 @@
 //! All tests in one binary: physics first, then contracts.
 
+mod bad_input;
+mod cli;
+mod parts;
 mod physics;
+mod truth;
+mod workshop;

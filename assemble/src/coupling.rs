@@ -162,7 +162,7 @@ impl Coupler<'_> {
             .setting("block", what)
             .setting("kernel", KERNEL_VERSION)
             .setting("resolution", self.resolution)
-            .digest("the part", self.placed.part_of(instance).key.clone());
+            .digest("the part", self.placed.part_of(instance).key);
         for (number, other) in self.placed.instances.iter().enumerate().filter(|&(n, _)| n != instance) {
             let relative = inverse * other.placement;
             let seen = Content::new()

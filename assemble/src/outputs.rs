@@ -29,6 +29,33 @@ pub struct Light<'a> {
     pub classic: Option<&'a Classic>,
 }
 
+/// Fail where the outputs could not be written, before hours are spent on them. Leaves nothing behind.
+pub fn check_writable(job: &Job, scene: &Scene) -> Result<()> {
+    let folder = job.out.join(&scene.name);
+    let there = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    tempfile::tempfile_in(there).map_err(|error| unusable(&folder, &error))?;
+    let Some(table) = &job.elements else { return Ok(()) };
+    let beside = table.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    tempfile::tempfile_in(beside).map(drop).map_err(|error| {
+        let remedy = "make the folder or choose another with --elements FILE.csv";
+        Error::new(
+            table,
+            format!("cannot be written ({error})"),
+            "a place in a folder that can be written to",
+            remedy,
+        )
+    })
+}
+
+fn unusable(folder: &Path, error: &std::io::Error) -> Error {
+    Error::new(
+        folder,
+        format!("cannot be used for the outputs ({error})"),
+        "a folder that can be written to",
+        "choose another with --out DIR",
+    )
+}
+
 /// Write all outputs; returns the paths written, for a person.
 pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> Result<Vec<String>> {
     let folder = job.out.join(&scene.name);
@@ -93,9 +120,7 @@ fn write_tables(job: &Job, folder: &Path, light: &Light, exposure: Exposure) -> 
 
 /// Make the folder, and take away the rounds of an earlier run, which may have had more of them.
 fn prepare_folder(folder: &Path) -> Result<()> {
-    let failed = |error: std::io::Error| {
-        Error::new(folder, error.to_string(), "a folder that can be written", "choose another with --out DIR")
-    };
+    let failed = |error: std::io::Error| unusable(folder, &error);
     std::fs::create_dir_all(folder).map_err(failed)?;
     for entry in std::fs::read_dir(folder).map_err(failed)?.flatten() {
         let name = entry.file_name();

@@ -4,15 +4,16 @@ use crate::account::{energy, refuse_endless_light, row_sum_defect};
 use crate::classic::{Classic, classic, largest_difference, whole_optics};
 use crate::coupling::{Coupled, Coupler};
 use crate::exchange::{Goal, Method, Node, Outcome, exchange, nodes};
-use crate::outputs::{Light, write_all};
+use crate::outputs::{Light, check_writable, write_all};
 use crate::placed::Placed;
 use crate::report::{Blocks, Bytes, PartReport, Report, RoundReport, Verify, peak_rss};
 use crate::steps::seconds;
+use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, Oven};
-use equilux_bake::prepare::{Preparation, prepare};
-use equilux_formats::{Error, Optics, Result, Scene, Store};
+use equilux_bake::prepare::{Preparation, Prepared, prepare};
+use equilux_formats::{Error, Optics, Result, Store};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -41,12 +42,15 @@ pub struct Job {
 pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let start = Instant::now();
     let scene = import_scene(&job.scene)?;
+    let prepared = prepare(&scene, &job.preparation)?;
+    check_writable(job, &scene)?;
     let store = Store::open(&job.cache)?;
     let stopped = || {
         let remedy = "run the same command again: what was finished is in the cache";
         Error::new(&job.scene, "stopped before the form factors were complete", "a complete run", remedy)
     };
-    let (placed, element_size) = bake_parts(job, &scene, &store, monitor)?.ok_or_else(stopped)?;
+    let element_size = prepared.element_size.to_string();
+    let placed = bake_parts(job, prepared, &store, monitor)?.ok_or_else(stopped)?;
     let coupled = couple(job, &placed, &store, monitor)?.ok_or_else(stopped)?;
 
     let each: Vec<Optics> = (0..placed.instances.len()).map(|k| placed.optics_of(k)).collect();
@@ -64,19 +68,17 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     report.element_size = element_size;
     report.bytes.peak_rss = peak;
     report.seconds.total = start.elapsed().as_secs_f64();
+    let left_undone = job.verify && classic.is_none();
     report.verify = classic.map(|c| verification(&c, &outcome));
-    report.notes = scene.notes.iter().cloned().chain(intruder_notes(&placed, &coupled)).collect();
+    report.notes = [scene.notes, damage_notes(&store), intruder_notes(&placed, &coupled)].concat();
+    if left_undone {
+        report.notes.push("stopped: the classic matrix was not computed, so nothing was compared".into());
+    }
     report.outputs = outputs;
     Ok(report)
 }
 
-fn bake_parts(
-    job: &Job,
-    scene: &Scene,
-    store: &Store,
-    monitor: &Monitor,
-) -> Result<Option<(Placed, String)>> {
-    let prepared = prepare(scene, &job.preparation)?;
+fn bake_parts(job: &Job, prepared: Prepared, store: &Store, monitor: &Monitor) -> Result<Option<Placed>> {
     let resolution = job.preparation.resolution;
     let oven = Oven { store, file: &job.scene, resolution, monitor };
     let mut parts: Vec<Baked> = Vec::new();
@@ -84,7 +86,7 @@ fn bake_parts(
         let Some(baked) = oven.bake(part)? else { return Ok(None) };
         parts.push(baked);
     }
-    Ok(Some((Placed::new(parts, prepared.instances), prepared.element_size.to_string())))
+    Ok(Some(Placed::new(parts, prepared.instances)))
 }
 
 fn couple(job: &Job, placed: &Placed, store: &Store, monitor: &Monitor) -> Result<Option<Vec<Coupled>>> {
@@ -210,7 +212,7 @@ fn intruder_notes(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
         let inside: Vec<String> = corrected.intruders.iter().map(|&i| name(i)).collect();
         let how =
             if corrected.origin.is_reused() { "taken corrected from the cache" } else { "computed anew" };
-        Some(format!("{} stands inside {}: its own block was {how}", inside.join(", "), name(k)))
+        Some(format!("inside {} is {}: its own block was {how}", name(k), inside.join(", ")))
     };
     coupled.iter().enumerate().filter_map(note).collect()
 }

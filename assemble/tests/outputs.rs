@@ -5,6 +5,7 @@ use equilux_assemble::canvas::Canvas;
 use equilux_assemble::exposure::Exposure;
 use equilux_assemble::scene_light::SceneLight;
 use equilux_assemble::{elements_csv, gltf_export, picture};
+use equilux_bake::clusters;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
 use equilux_formats::{Camera, Corners, Element, Face, FaceId, Geometry, MaterialId, Rgb};
@@ -16,13 +17,13 @@ const BLUE: Rgb = [0.0, 0.0, PI * 0.7];
 
 /// Rectangles, each with its own face: a corner and the two sides that span it, the front towards their cross product.
 fn geometry(rectangles: &[[DVec3; 3]]) -> Geometry {
-    let mut geometry = Geometry::default();
+    let (mut elements, mut faces) = (vec![], vec![]);
     for (face, &[corner, u, v]) in rectangles.iter().enumerate() {
         let corners = Corners::quad([corner, corner + u, corner + u + v, corner + v]);
-        geometry.elements.push(Element::new(corners, MaterialId(0), FaceId::from_index(face)));
-        geometry.faces.push(Face::new(corners.as_slice().to_vec()));
+        elements.push(Element::new(corners, MaterialId(0), FaceId::from_index(face)));
+        faces.push(Face::new(corners.as_slice().to_vec()));
     }
-    geometry
+    clusters::geometry(elements, faces)
 }
 
 /// A cube of edge 1 around `centre`, its six fronts outside.
@@ -72,7 +73,10 @@ fn the_nearer_surface_hides_the_farther_and_backs_are_transparent() {
     let blue_far = sheet(0.0, DVec3::X * 2.0, DVec3::Y * 2.0);
     let colour_at_centre = |rectangles: &[[DVec3; 3]]| {
         let world = place(&geometry(rectangles));
-        at(&picture::shade(&trace(&world, camera(4.0)), &[RED, BLUE], Exposure(1.0)), 0.5, 0.5)
+        // Elements stand in the order of their hierarchy: tell the near one by its place.
+        let colours: Vec<Rgb> =
+            world.elements.iter().map(|e| if e.centroid.z == 1.0 { RED } else { BLUE }).collect();
+        at(&picture::shade(&trace(&world, camera(4.0)), &colours, Exposure(1.0)), 0.5, 0.5)
     };
     assert_eq!(colour_at_centre(&[red_near, blue_far]), [218, 0, 0]);
     let turned = sheet(1.0, DVec3::Y, DVec3::X);
@@ -154,10 +158,10 @@ struct Fixture {
 impl Fixture {
     fn new() -> Self {
         let triangle = Corners::triangle([DVec3::ZERO, DVec3::X, DVec3::Y / 3.0]);
-        let small = Geometry {
-            elements: vec![Element::new(triangle, MaterialId(0), FaceId(0))],
-            faces: vec![Face::new(triangle.as_slice().to_vec())],
-        };
+        let small = clusters::geometry(
+            vec![Element::new(triangle, MaterialId(0), FaceId(0))],
+            vec![Face::new(triangle.as_slice().to_vec())],
+        );
         let far = DAffine3::from_translation(DVec3::new(1e7, 0.1, -3e6)) * DAffine3::from_rotation_y(0.3);
         let world = World::new([(&cube(DVec3::ZERO), far), (&small, DAffine3::IDENTITY)]);
         let rows = [0.1, 1e-17, 2e5 / 3.0, PI].map(|scale| {

@@ -136,13 +136,21 @@ fn bake_file(
     let oven = Oven { store, file, resolution: wanted.resolution, monitor };
     for part in &prepare(&scene, wanted)?.parts {
         let start = Instant::now();
-        let baked = oven.bake(part)?.ok_or_else(|| {
+        let baked = oven.bake(part);
+        outcome.notes.extend(damage_notes(store));
+        let baked = baked?.ok_or_else(|| {
             let remedy = "run the same command again: what was finished is in the cache";
             Error::new(file, format!("stopped while baking part `{}`", part.name), "a complete run", remedy)
         })?;
         outcome.parts.push(part_outcome(part, &baked, start.elapsed().as_secs_f64()));
     }
     Ok(())
+}
+
+/// A sentence for each cached file that could not be used since the last call.
+pub fn damage_notes(store: &Store) -> Vec<String> {
+    let note = |error: &Error| format!("{}: {}; it was made again", error.file.display(), error.found);
+    store.take_damages().iter().map(note).collect()
 }
 
 fn part_outcome(part: &PreparedPart, baked: &Baked, seconds: f64) -> PartOutcome {

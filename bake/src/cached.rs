@@ -21,8 +21,8 @@ impl Origin {
 impl std::fmt::Display for Origin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Self::Reused => write!(f, "reused, everything it depends on is unchanged"),
-            Self::Computed(reason) => write!(f, "computed, {reason}"),
+            Self::Reused => write!(f, "reused: all inputs are unchanged"),
+            Self::Computed(reason) => write!(f, "computed: {reason}"),
         }
     }
 }
@@ -41,12 +41,10 @@ pub fn cached<T: Stored>(
             return Ok(Some((value, Origin::Reused)));
         }
         Lookup::Missing => match store.last_manifest(name) {
-            None => "it is not in the cache".to_string(),
-            Some(old) => {
-                manifest.difference(&old).unwrap_or_else(|| "its file is no longer in the cache".to_string())
-            }
+            None => "never computed before".to_string(),
+            Some(old) => manifest.difference(&old).unwrap_or_else(|| "the cached file is gone".to_string()),
         },
-        Lookup::Damaged(error) => format!("its cached file cannot be used ({error})"),
+        Lookup::Damaged(error) => format!("the cached file cannot be used ({error})"),
     };
     let Some(value) = compute()? else { return Ok(None) };
     store.save(manifest, &value)?;

@@ -8,8 +8,8 @@ use crate::prepare::PreparedPart;
 use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use equilux_formats::{
-    BakedGeometry, BakedLight, BakedPart, ClusterTree, Content, Digest, Error, Geometry, Key,
-    LocalEquilibrium, LocalSolver, Manifest, Optics, Result, Rgb, Rows, Store,
+    BakedGeometry, BakedLight, BakedPart, ClusterTree, Content, Digest, Element, Error, Geometry, Key,
+    LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
 use std::path::Path;
@@ -66,12 +66,12 @@ impl Oven<'_> {
             };
             Ok(block(&request, self.monitor).map(|timed| {
                 form_factor_time = timed.time;
-                BakedGeometry { geometry: part.geometry.clone(), self_block: timed.block }
+                BakedGeometry { geometry: without_materials(&part.geometry), self_block: timed.block }
             }))
         })?;
         let Some((geometry, form_factors)) = found else { return Ok(None) };
         let start = Instant::now();
-        let manifest = light_manifest(key.clone().into(), &part.optics, part.solver);
+        let manifest = light_manifest(key.into(), &part.optics, part.solver);
         let (light, light_origin) = cached(self.store, &name("light"), &manifest, || {
             self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
             self.refuse_endless_light(part, &geometry)?;
@@ -88,7 +88,7 @@ impl Oven<'_> {
         .expect("a local equilibrium is not stopped halfway");
         let part = BakedPart {
             name: part.name.clone(),
-            geometry: geometry.geometry,
+            geometry: part.geometry.clone(),
             optics: light.optics,
             materials: part.materials.clone(),
             self_block: geometry.self_block,
@@ -147,13 +147,21 @@ pub fn light_manifest(form_factors: Digest, optics: &Optics, solver: LocalSolver
         .setting("local solver", format!("{solver:?}"))
 }
 
+/// The geometry as form factors know it: they stay when a wall gets another material.
+fn without_materials(geometry: &Geometry) -> Geometry {
+    let bare = |element: &Element| Element { material: MaterialId(0), ..*element };
+    Geometry {
+        elements: geometry.elements.iter().map(bare).collect(),
+        faces: geometry.faces.clone(),
+        clusters: geometry.clusters.clone(),
+    }
+}
+
 fn geometry_digest(geometry: &Geometry) -> Digest {
     let mut content = Content::new();
     for element in &geometry.elements {
         let corners = element.corners.as_slice().iter().flat_map(|p| p.to_array());
-        content = content
-            .f64s(&corners.collect::<Vec<_>>())
-            .bytes([element.material.0.to_le_bytes(), element.face.0.to_le_bytes()].concat());
+        content = content.f64s(&corners.collect::<Vec<_>>()).bytes(element.face.0.to_le_bytes());
     }
     for face in &geometry.faces {
         content = content.f64s(&face.corners.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>());

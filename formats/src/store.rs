@@ -8,11 +8,14 @@ use crate::error::{Error, Result};
 use crate::fingerprint::{Content, Digest, Key, Manifest};
 use crate::stored::Stored;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// A cache folder that can be written to.
 #[derive(Debug, Clone)]
 pub struct Store {
     folder: PathBuf,
+    /// What was found damaged since the folder was opened; clones share it.
+    damages: Arc<Mutex<Vec<Error>>>,
 }
 
 /// What the cache has under a key.
@@ -38,7 +41,7 @@ impl Store {
                 "choose another with --cache DIR",
             )
         })?;
-        Ok(Self { folder: folder.into() })
+        Ok(Self { folder: folder.into(), damages: Arc::default() })
     }
 
     /// Where a `kind` of file with this key lies, or would lie.
@@ -54,8 +57,16 @@ impl Store {
         }
         match read(&path, key) {
             Ok(found) => Lookup::Found(found),
-            Err(error) => Lookup::Damaged(error),
+            Err(error) => {
+                self.damages.lock().unwrap_or_else(PoisonError::into_inner).push(error.clone());
+                Lookup::Damaged(error)
+            }
         }
+    }
+
+    /// What was found damaged since the last call, in the order in which it was found, so that a person hears of it.
+    pub fn take_damages(&self) -> Vec<Error> {
+        std::mem::take(&mut *self.damages.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Keeps `value`, which was made from what `manifest` lists, under the manifest's key.

@@ -1,9 +1,9 @@
 //! What the cache promises: what comes back is what was put in, to the last bit, or a sentence that says why not.
 
 use equilux_formats::{
-    BakedGeometry, BakedLight, Content, Corners, Element, Error, FORMAT_VERSION, Face, FaceId, Factors,
-    Geometry, Kind, LocalEquilibrium, LocalSolver, Lookup, Lu, Manifest, MaterialId, Optics, Reader, Rows,
-    Store, Stored, Writer,
+    BakedGeometry, BakedLight, ClusterTree, Content, Corners, Element, Error, FORMAT_VERSION, Face, FaceId,
+    Factors, Geometry, Kind, LocalEquilibrium, LocalSolver, Lookup, Lu, Manifest, MaterialId, Optics,
+    Precision, Reader, RowGroup, Rows, Store, Stored, Writer,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -28,8 +28,10 @@ fn part() -> BakedGeometry {
         Element::new(Corners::triangle(triangle).flipped(), MaterialId(1), FaceId(1)),
     ];
     let faces = vec![Face::new(quad.to_vec()), Face::new(triangle.to_vec())];
-    let self_block = Rows::from_rows(2, [vec![(1, 0.1 + 0.2)], vec![(0, 1e-300), (1, 0.0)]]);
-    BakedGeometry { geometry: Geometry { elements, faces }, self_block }
+    let areas: Vec<f64> = elements.iter().map(|element| element.area).collect();
+    let clusters = ClusterTree::new(&areas, vec![[0, 1]]).unwrap();
+    let self_block = Rows::from_rows(3, [vec![(1, 0.1 + 0.2)], vec![(0, 1e-300), (1, 0.0)]]);
+    BakedGeometry { geometry: Geometry { elements, faces, clusters }, self_block }
 }
 
 fn light() -> BakedLight {
@@ -42,7 +44,9 @@ fn light() -> BakedLight {
 }
 
 fn coupling() -> Rows {
-    Rows::from_rows(5, [vec![(0, 0.125), (4, 1e-9)], vec![], vec![(2, 1.0)]])
+    let together = RowGroup { columns: vec![0, 4], values: vec![0.125, 1e-9, 0.0, 0.25], receivers: 2 };
+    let alone = RowGroup { columns: vec![2], values: vec![1.0], receivers: 1 };
+    Rows::from_groups(5, [together, alone], Precision::Steps)
 }
 
 fn folder() -> TempDir {
@@ -190,17 +194,25 @@ fn contents_that_break_a_promise_are_refused() {
     let message = read::<BakedLight>(&path).unwrap_err().to_string();
     assert!(message.contains("a permutation that names a row twice"), "{message}");
 
-    for (starts, columns, problem) in [
-        ([0u64, 3, 2], [0u32, 1], "rows that do not divide"),
-        ([1, 1, 2], [0, 1], "rows that do not divide"),
-        ([0, 1, 3], [0, 1], "rows that do not divide"),
-        ([0, 1, 2], [0, 5], "sender 5 of 5"),
+    for (sizes, differences, problem) in [
+        (vec![1u32, 1, 1], [0u32, 1], "groups do not fit"),
+        (vec![1, 1], [0, 1], "groups do not fit"),
+        (vec![2, 2], [0, 1], "groups do not fit"),
+        (vec![u32::MAX, u32::MAX], [0, 1], "groups do not fit"),
+        (vec![1, 2], [0, 5], "sender 5 of 5"),
     ] {
-        let meta = std::collections::BTreeMap::from([("senders", 5)]);
+        #[derive(serde::Serialize)]
+        struct Meta {
+            senders: u32,
+            precision: Precision,
+        }
+        let meta = Meta { senders: 5, precision: Precision::Full };
         let mut writer = Writer::new(Kind::Coupling, &manifest(), &meta);
-        writer.array("row starts", &starts);
-        writer.array("columns", &columns);
+        writer.array("group sizes", &sizes);
+        writer.array("column differences", &differences);
         writer.array("form factors", &[0.5, 0.5]);
+        writer.array::<u16>("steps", &[]);
+        writer.array::<f64>("step units", &[]);
         writer.write_to(&path).unwrap();
         let message = read::<Rows>(&path).unwrap_err().to_string();
         assert!(message.contains(problem), "{problem:?} is not in {message:?}");

@@ -1,4 +1,7 @@
-//! What the tests and benchmarks share: shapes and scenes made by hand.
+//! What the tests and benchmarks share: shapes, rooms and glTF files made by hand, and our programs.
 
 pub mod levels;
+pub mod model;
+pub mod program;
+pub mod rooms;
 pub mod shapes;

@@ -85,9 +85,10 @@ pub struct Outcome {
     pub converged: bool,
 }
 
-/// A bound below this, relative to the brightest radiosity, that a round lowers by less than the second number has
-/// reached rounding.
-const STALLED: (f64, f64) = (1e-9, 0.95);
+/// Rounding is reached when the bound is below the first number, relative to the brightest radiosity, and at least the
+/// third number of rounds before it was hardly larger (by the second). The bound of block Jacobi may rise and fall by
+/// turns, so the last round alone tells nothing.
+const STALLED: (f64, f64, usize) = (1e-9, 0.95, 3);
 
 /// The instances' shares of the equation.
 pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics]) -> Vec<Node<'a>> {
@@ -136,8 +137,7 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
         let brightest = largest(&state.flat()).into_iter().fold(0.0, f64::max);
         let relative_bound = if error_bound == 0.0 { 0.0 } else { error_bound / brightest };
         converged = relative_bound <= goal.error;
-        let stalled = relative_bound < STALLED.0
-            && rounds.last().is_some_and(|last| relative_bound > STALLED.1 * last.relative_bound);
+        let stalled = has_stalled(&rounds, relative_bound);
         rounds.push(Round {
             number: rounds.len() + 1,
             residual: residual.iter().flatten().flatten().fold(0.0, |most: f64, r| most.max(r.abs())),
@@ -154,6 +154,12 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
     }
     let irradiance = state.irradiance(nodes).concat();
     Outcome { radiosity: state.flat(), irradiance, rounds, times, converged }
+}
+
+fn has_stalled(rounds: &[Round], bound: f64) -> bool {
+    let (small, share, back) = STALLED;
+    let earlier = &rounds[..rounds.len().saturating_sub(back)];
+    bound < small && earlier.iter().any(|round| bound > share * round.relative_bound)
 }
 
 /// E + ρ × irradiance.

@@ -74,8 +74,8 @@ fn print(arguments: &Arguments, batch: &Batch) {
         for part in &file.parts {
             println!("{}", line(&file.file, part));
             if arguments.explain {
-                println!("    form factors: {}", part.form_factors_reason);
-                println!("    light: {}", part.light_reason);
+                println!("    form factors {}", part.form_factors_reason);
+                println!("    light {}", part.light_reason);
             }
         }
     }

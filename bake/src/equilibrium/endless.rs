@@ -15,18 +15,18 @@ pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>)
     }
     let mut group: Vec<usize> = (0..n).collect();
     let mut sums = vec![0.0; n];
-    for i in 0..n {
+    for (i, sum) in sums.iter_mut().enumerate() {
         for (j, value) in rows(i) {
-            sums[i] += value;
+            *sum += value;
             unite(&mut group, i, j);
         }
     }
     for channel in 0..3 {
         let mut loses = vec![false; n];
         let mut emitter = vec![None; n];
-        for i in 0..n {
+        for (i, sum) in sums.iter().enumerate() {
             let root = find(&mut group, i);
-            loses[root] |= 1.0 - optics.reflectance[i][channel] * sums[i] > NO_LOSS;
+            loses[root] |= 1.0 - optics.reflectance[i][channel] * sum > NO_LOSS;
             if optics.emission[i][channel] > 0.0 {
                 emitter[root] = emitter[root].or(Some(i));
             }

@@ -12,6 +12,7 @@ pub type Polygon = SmallVec<[DVec3; 10]>;
 
 /// What lies on one side of a plane.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "short-lived; a box would cost an allocation a cut")]
 pub enum Side {
     /// The whole polygon.
     All,

@@ -29,6 +29,7 @@ pub struct Evaluator<'a> {
 }
 
 /// The pyramid an occluder hides from a receiver.
+#[expect(clippy::large_enum_variant, reason = "short-lived; a box would cost an allocation a cut")]
 enum Remembered {
     Unknown,
     EdgeOn,
@@ -36,6 +37,7 @@ enum Remembered {
 }
 
 /// Something before the sender.
+#[expect(clippy::large_enum_variant, reason = "short-lived; a box would cost an allocation a cut")]
 enum Blocker {
     /// An occluder wholly before the sender's plane.
     Whole(usize, u32),

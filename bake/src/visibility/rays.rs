@@ -86,12 +86,17 @@ impl<'a> RayIndex<'a> {
         }
         let inside = (0..corners.len()).all(|i| {
             let (a, b) = (corners[i] - origin, corners[(i + 1) % corners.len()] - origin);
-            // The sign of this triple product is the same from both elements that share the edge.
-            a.cross(b).dot(direction) * approach >= 0.0
+            // Both elements that share the edge get the same number, but the edges that meet in a corner each round
+            // their own way: without this much tolerance a ray at the corner might pass outside of all of them.
+            let rounding = ROUNDING * a.length() * b.length() * direction.length();
+            a.cross(b).dot(direction) * approach.signum() >= -rounding
         });
         inside.then_some(Hit { element: index, distance, front: approach < 0.0 })
     }
 }
+
+/// What a triple product may err by, relative to the lengths of its vectors: about eight roundings.
+const ROUNDING: f64 = 1e-15;
 
 fn closer(hit: &Hit, than: &Hit) -> bool {
     let tie = (hit.distance - than.distance).abs() <= 1e-9 * than.distance;

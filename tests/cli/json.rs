@@ -1,0 +1,99 @@
+//! `--json`: one object on stdout and nothing else.
+
+use crate::workshop::Workshop;
+use equilux_tests::rooms::furnished;
+use serde_json::Value;
+
+/// Keys that other programs rely on, as JSON pointers.
+const KEYS: [&str; 46] = [
+    "/scene",
+    "/elements",
+    "/parts/0/name",
+    "/parts/0/elements",
+    "/parts/0/form_factors",
+    "/parts/0/reason",
+    "/instances",
+    "/blocks/self_baked",
+    "/blocks/self_reused",
+    "/blocks/coupling_computed",
+    "/blocks/coupling_reused",
+    "/blocks/coupling_left_out",
+    "/form_factors_computed",
+    "/seconds/step1",
+    "/seconds/step2",
+    "/seconds/step3",
+    "/seconds/step4",
+    "/seconds/step5",
+    "/seconds/step6",
+    "/seconds/step7",
+    "/seconds/step8",
+    "/seconds/t1",
+    "/seconds/t2",
+    "/seconds/t3",
+    "/seconds/total",
+    "/rounds/0/round",
+    "/rounds/0/residual",
+    "/rounds/0/error_bound",
+    "/rounds/0/seconds",
+    "/converged",
+    "/bytes/dense",
+    "/bytes/stored",
+    "/bytes/peak_rss",
+    "/energy/emitted/2",
+    "/energy/absorbed/2",
+    "/energy/escaped/2",
+    "/row_sum_defect/max",
+    "/row_sum_defect/mean",
+    "/verify",
+    "/notes",
+    "/outputs",
+    "/element_size",
+    "/parts/3/local_solver",
+    "/parts/3/stored",
+    "/blocks/self_corrected",
+    "/bytes/largest_block",
+];
+
+fn object(arguments: &[&str], program: &str) -> Value {
+    let ended = Workshop::with(&furnished()).run(program, arguments);
+    assert_eq!(ended.code, Some(0), "{program} {arguments:?}: {}", ended.stderr);
+    assert_eq!(ended.stderr, "", "{program} {arguments:?} prints on stderr");
+    let parsed: Value = serde_json::from_str(&ended.stdout).unwrap_or_else(|error| {
+        panic!("{program}: stdout is not one JSON value ({error}): {}", ended.stdout)
+    });
+    assert!(parsed.is_object(), "{program}: stdout is no object: {parsed}");
+    parsed
+}
+
+#[test]
+fn assemble_prints_one_object_with_every_key() {
+    let report = object(&["scene.glb", "--element-size", "1", "--json"], "assemble");
+    let missing: Vec<_> = KEYS.iter().filter(|key| report.pointer(key).is_none()).collect();
+    assert!(missing.is_empty(), "missing {missing:?} in {report}");
+    assert_eq!(report["scene"], "scene");
+    assert_eq!(report["instances"], 4);
+    assert_eq!(report["verify"], Value::Null, "nobody asked for the comparison");
+    let sum: u64 =
+        report["parts"].as_array().expect("a list").iter().filter_map(|p| p["elements"].as_u64()).sum();
+    assert_eq!(report["elements"], sum, "each part stands once: their elements are the scene's");
+    let dense = report["elements"].as_u64().expect("a number").pow(2) * 8;
+    assert_eq!(report["bytes"]["dense"], dense, "a row and a column an element, eight bytes each");
+}
+
+#[test]
+fn verify_adds_the_difference_to_the_object() {
+    let report = object(&["scene.glb", "--element-size", "1", "--verify", "--json"], "assemble");
+    let difference = report["verify"]["max_rel_diff"].as_f64();
+    // How small it must be is asked elsewhere.
+    assert!(difference.is_some_and(|d| d < 1e-6), "verify is {}", report["verify"]);
+}
+
+#[test]
+fn bake_prints_one_object() {
+    let batch = object(&["scene.glb", "--element-size", "1", "--json"], "bake");
+    let parts = batch["files"][0]["parts"].as_array().expect("a list");
+    assert_eq!(parts.len(), 4, "{batch}");
+    for key in ["name", "elements", "baked", "form_factors_reason", "stored", "row_sum_defect", "seconds"] {
+        assert!(parts[0].get(key).is_some(), "no {key} in {}", parts[0]);
+    }
+}

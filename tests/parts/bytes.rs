@@ -1,0 +1,57 @@
+//! The same bytes whoever computes them: a cache can be shared, and a picture compared.
+
+use crate::workshop::Workshop;
+use equilux_tests::rooms::furnished;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+#[test]
+fn outputs_and_cache_are_the_same_bytes_for_any_number_of_threads() {
+    let workshop = Workshop::with(&furnished());
+    let one = files_made_with("1", &workshop);
+    let made = |ending: &str| one.keys().filter(|path| path.to_string_lossy().ends_with(ending)).count();
+    for ending in [".eqx", "round-001.png", "final.png", "wireframe.png", "result.glb", "table.csv"] {
+        assert!(made(ending) > 0, "nothing that ends in {ending} to compare among {:?}", one.keys());
+    }
+    for threads in ["2", "4"] {
+        let many = files_made_with(threads, &workshop);
+        assert_eq!(
+            one.keys().collect::<Vec<_>>(),
+            many.keys().collect::<Vec<_>>(),
+            "files with 1 and {threads} threads"
+        );
+        let differing: Vec<_> =
+            one.iter().filter(|(path, bytes)| many[*path] != **bytes).map(|(p, _)| p).collect();
+        assert!(differing.is_empty(), "with {threads} threads other bytes than with 1: {differing:?}");
+    }
+}
+
+/// All that a run from nothing writes, by paths relative to where it wrote.
+fn files_made_with(threads: &str, workshop: &Workshop) -> BTreeMap<PathBuf, Vec<u8>> {
+    let made = "made";
+    std::fs::create_dir(workshop.path(made)).expect("a new folder");
+    let run = workshop.run(
+        "assemble",
+        &[
+            "scene.glb",
+            "--element-size",
+            "0.5",
+            "--bisect",
+            "3",
+            "--rounds",
+            "4",
+            "--threads",
+            threads,
+            "--cache",
+            "made/cache",
+            "--out",
+            "made/out",
+            "--elements",
+            "made/table.csv",
+        ],
+    );
+    assert_eq!(run.code, Some(0), "{}", run.stderr);
+    let files = workshop.files(made);
+    std::fs::remove_dir_all(workshop.path(made)).expect("a folder to remove");
+    files
+}

@@ -1,0 +1,6 @@
+//! Parts and the whole are one equation: the same light however a scene is divided and solved, the same bytes whoever
+//! computes them, and nothing computed twice.
+
+mod bytes;
+mod reuse;
+mod split;

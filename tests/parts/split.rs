@@ -1,0 +1,87 @@
+//! The light of a scene made of parts is the light of the classic whole-scene matrix.
+
+use crate::workshop::{Workshop, assembled};
+use equilux_assemble::exchange::Method;
+use equilux_assemble::run::Job;
+use equilux_bake::bisect::Cut;
+use equilux_bake::prepare::{Division, Preparation};
+use equilux_formats::LocalSolver;
+use equilux_tests::rooms::furnished;
+use proptest::prelude::*;
+
+/// Both sides solve the same equation down to rounding, some 1e-14 of the brightest radiosity; the darkest elements of
+/// these rooms have a thousandth of it. Wrong visibility anywhere costs 1e-3 and more.
+const ROUNDING: f64 = 1e-10;
+
+/// Polygons of a closed scene fill a receiver's whole view. Each of some hundred edge terms is rounded at 1e-16; clipped
+/// slivers cost more.
+const CLOSED: f64 = 1e-12;
+
+fn agrees_with_the_whole(job: &Job) {
+    let report = assembled(&Job { verify: true, ..job.clone() });
+    let difference = report.verify.as_ref().expect("a comparison").max_rel_diff;
+    let what =
+        format!("{:?}, {:?}, {:?}", job.preparation.division, job.method, job.preparation.local_solver);
+    assert!(difference <= ROUNDING, "{what}: {difference:e} away from the whole, more than {ROUNDING:e}");
+    let defect = report.row_sum_defect.max;
+    assert!(
+        defect <= CLOSED,
+        "{what}: a row of this closed scene sums to 1 ± {defect:e}, more than {CLOSED:e}"
+    );
+    assert!(report.converged, "{what}: not converged, {:?}", report.rounds.last());
+}
+
+/// All local solvers, and both methods, on one division. The cache is shared: what is compared is the solution.
+fn every_way_of_solving_agrees(division: Division) {
+    let workshop = Workshop::with(&furnished());
+    let job = workshop.job(division);
+    agrees_with_the_whole(&Job { method: Method::GaussSeidel, ..job.clone() });
+    for solver in
+        [LocalSolver::Direct, LocalSolver::GaussSeidel, LocalSolver::Progressive, LocalSolver::Iterative]
+    {
+        let preparation = Preparation { local_solver: Some(solver), ..job.preparation.clone() };
+        agrees_with_the_whole(&Job { preparation, ..job.clone() });
+    }
+}
+
+#[test]
+fn two_cells_are_the_whole() {
+    every_way_of_solving_agrees(Division::Bisect(2));
+}
+
+#[test]
+fn eight_cells_are_the_whole() {
+    every_way_of_solving_agrees(Division::Bisect(8));
+}
+
+#[test]
+fn thirty_two_cells_are_the_whole() {
+    every_way_of_solving_agrees(Division::Bisect(32));
+}
+
+#[test]
+fn authored_parts_each_with_its_own_solver_are_the_whole() {
+    let workshop = Workshop::with(&furnished());
+    for method in [Method::Jacobi, Method::GaussSeidel] {
+        agrees_with_the_whole(&Job { method, ..workshop.job(Division::Authored) });
+    }
+    let report = assembled(&workshop.job(Division::Authored));
+    let solvers: Vec<&str> = report.parts.iter().map(|part| part.local_solver.as_str()).collect();
+    assert_eq!(solvers, ["Direct", "GaussSeidel", "Progressive", "Iterative"], "what the extras ask for");
+}
+
+/// A plane anywhere in the room, often along walls, tabletops and the edges of elements.
+fn plane() -> impl Strategy<Value = Cut> {
+    let offset = prop_oneof![(0..32).prop_map(|eighths| f64::from(eighths) / 8.0), 0.0..4.0];
+    (0..3usize, offset).prop_map(|(axis, offset)| Cut { axis, offset })
+}
+
+proptest! {
+    // Six scenes of half a second; a failure is shown as it was found, for shrinking would take minutes.
+    #![proptest_config(ProptestConfig { cases: 6, max_shrink_iters: 0, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn cells_between_any_planes_are_the_whole(planes in proptest::collection::vec(plane(), 1..5)) {
+        agrees_with_the_whole(&Workshop::with(&furnished()).job(Division::Cuts(planes)));
+    }
+}

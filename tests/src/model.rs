@@ -1,0 +1,143 @@
+//! Parts made by hand as glTF files: in go nodes, each with a part, its place and extras; out comes a `.glb` file.
+
+use equilux_formats::{Material, MaterialId, Part};
+use glam::DVec3;
+use serde_json::{Value, json};
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// A root node of a scene.
+#[derive(Debug, Clone)]
+pub struct Node {
+    /// Its name.
+    pub name: String,
+    /// What stands there; nothing if the extras name a part file.
+    pub part: Option<Part>,
+    /// Where its origin stands, metres.
+    pub at: DVec3,
+    /// What the author asks for, as the importer reads it.
+    pub extras: Value,
+}
+
+impl Node {
+    /// `part` as it stands.
+    pub fn new(name: &str, part: Part) -> Self {
+        Self { name: name.into(), part: Some(part), at: DVec3::ZERO, extras: json!({}) }
+    }
+
+    /// The contents of another file.
+    pub fn of_file(name: &str, file: &str) -> Self {
+        Self { name: name.into(), part: None, at: DVec3::ZERO, extras: json!({ "part": file }) }
+    }
+
+    /// The same node with the local solver asked for.
+    pub fn solved_by(mut self, solver: &str) -> Self {
+        self.extras["local_solver"] = json!(solver);
+        self
+    }
+}
+
+/// A glTF file in memory, open to damage.
+#[derive(Debug, Clone)]
+pub struct Model {
+    /// The JSON.
+    pub json: Value,
+    /// The only buffer.
+    pub binary: Vec<u8>,
+}
+
+impl Model {
+    /// A scene of these nodes, one primitive for each material of each.
+    pub fn of(nodes: &[Node]) -> Self {
+        let json = json!({
+            "asset": { "version": "2.0" },
+            "extensionsUsed": ["KHR_materials_emissive_strength"],
+            "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+            "nodes": [], "meshes": [], "materials": [], "accessors": [], "bufferViews": [], "buffers": [{}],
+        });
+        let mut model = Self { json, binary: vec![] };
+        nodes.iter().for_each(|node| model.add(node));
+        model.json["buffers"][0]["byteLength"] = json!(model.binary.len());
+        model
+    }
+
+    /// Replace what is at `pointer` in the JSON.
+    pub fn with(mut self, pointer: &str, value: Value) -> Self {
+        let (parent, key) = pointer.rsplit_once('/').expect("a pointer with a slash");
+        let parent = self.json.pointer_mut(parent).expect("the parent is there");
+        match key.parse::<usize>() {
+            Ok(index) => parent[index] = value,
+            Err(_) => parent[key] = value,
+        }
+        self
+    }
+
+    /// The bytes of the `.glb` file.
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut json = self.json.to_string().into_bytes();
+        json.resize(json.len().next_multiple_of(4), b' ');
+        let number = |value: usize| (value as u32).to_le_bytes().to_vec();
+        let length = 12 + 8 + json.len() + 8 + self.binary.len();
+        let head = [b"glTF".to_vec(), number(2), number(length)].concat();
+        let json = [number(json.len()), b"JSON".to_vec(), json].concat();
+        let binary = [number(self.binary.len()), b"BIN\0".to_vec(), self.binary.clone()].concat();
+        [head, json, binary].concat()
+    }
+
+    /// Write the `.glb` file.
+    pub fn write(&self, path: &Path) {
+        std::fs::write(path, self.bytes()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+    }
+
+    fn add(&mut self, node: &Node) {
+        let mut json = json!({ "name": node.name, "translation": node.at.to_array(), "extras": node.extras });
+        if let Some(part) = &node.part {
+            let primitives: Vec<Value> =
+                (0..part.materials.len()).map(|m| self.primitive(part, MaterialId::from_index(m))).collect();
+            json["mesh"] = json!(self.push("meshes", json!({ "primitives": primitives })));
+        }
+        self.push("nodes", json);
+    }
+
+    fn primitive(&mut self, part: &Part, material: MaterialId) -> Value {
+        let surfaces = part.surfaces.iter().filter(|surface| surface.material == material);
+        let corners = surfaces.flat_map(|surface| {
+            let c = surface.corners.as_slice();
+            (1..c.len() - 1).flat_map(|i| [c[0], c[i], c[i + 1]]).collect::<Vec<_>>()
+        });
+        let (offset, mut count) = (self.binary.len(), 0);
+        for corner in corners {
+            corner.as_vec3().to_array().iter().for_each(|x| self.binary.extend(x.to_le_bytes()));
+            count += 1;
+        }
+        let length = self.binary.len() - offset;
+        let view =
+            self.push("bufferViews", json!({ "buffer": 0, "byteOffset": offset, "byteLength": length }));
+        // The importer does not ask for minimum and maximum, which glTF wants of positions.
+        let accessor = json!({ "bufferView": view, "componentType": 5126, "type": "VEC3", "count": count,
+            "min": [0, 0, 0], "max": [0, 0, 0] });
+        let positions = self.push("accessors", accessor);
+        let material = self.push("materials", gltf_material(&part.materials[material.index()]));
+        json!({ "attributes": { "POSITION": positions }, "material": material })
+    }
+
+    fn push(&mut self, list: &str, value: Value) -> usize {
+        let list = self.json[list].as_array_mut().expect("a list");
+        list.push(value);
+        list.len() - 1
+    }
+}
+
+fn gltf_material(material: &Material) -> Value {
+    let radiance = material.emission.map(|e| e / PI);
+    // glTF wants emissive factors in 0..1, and their strength apart.
+    let strength = radiance.iter().fold(1.0, |most: f64, &l| most.max(l));
+    let [r, g, b] = material.reflectance;
+    json!({
+        "name": material.name,
+        "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0 },
+        "emissiveFactor": radiance.map(|l| l / strength),
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": strength } },
+        "doubleSided": material.double_sided,
+    })
+}
