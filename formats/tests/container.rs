@@ -105,7 +105,7 @@ fn foreign_files_are_named_as_such() {
     let mut newer = bytes.clone();
     newer[8..12].copy_from_slice(&(FORMAT_VERSION + 6).to_le_bytes());
     let message = read_bytes::<Rows>(&folder, &newer).unwrap_err().to_string();
-    for part in ["changed.eqx", "format version 7", "expected version 1", "bake it again"] {
+    for part in ["changed.eqx", "format version 8", "expected version 2", "bake it again"] {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 
@@ -141,7 +141,7 @@ fn by_hand(count: u64, length: impl Fn(u64) -> u64) -> Vec<u8> {
     let entry = Entry { name: "numbers", number: "f64", count, length: length(frame.len() as u64), checksum };
     let index = Index { manifest: manifest(), arrays: vec![entry] };
     let messages = [rmp_serde::to_vec_named(&index).unwrap(), vec![0xC0]].concat();
-    let header = [&b"EQUILUX\0\x01\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
+    let header = [&b"EQUILUX\0\x02\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
     let checksum = *blake3::hash(&[&header[..], &messages].concat()).as_bytes();
     [&header[..], &checksum, &messages, &frame].concat()
 }
