@@ -69,15 +69,26 @@ pub fn whole_optics(placed: &Placed) -> Optics {
     }
 }
 
-/// The largest difference between two radiosities, element by element, relative to the larger of the two; where both
-/// are below rounding of the brightest, nothing is compared.
+/// The largest difference between two radiosities, element by element, relative to the larger of the two. A
+/// difference below one rounding (2⁻⁵³) of the brightest radiosity is none: form factors, which are at most 1, are
+/// themselves no better than that.
 pub fn largest_difference(a: &[Rgb], b: &[Rgb]) -> f64 {
     let brightest = b.iter().flatten().fold(0.0f64, |most, v| most.max(v.abs()));
+    let rounding = brightest * f64::EPSILON / 2.0;
     let pairs = a.iter().flatten().zip(b.iter().flatten());
     pairs
-        .map(|(&a, &b)| {
-            let size = a.abs().max(b.abs());
-            if size <= brightest * 1e-15 { 0.0 } else { (a - b).abs() / size }
-        })
+        .map(|(&a, &b)| if (a - b).abs() <= rounding { 0.0 } else { (a - b).abs() / a.abs().max(b.abs()) })
         .fold(0.0, f64::max)
+}
+
+/// The root mean square difference over the mean of the second, weighted by area; the worst channel.
+pub fn mean_difference(placed: &Placed, a: &[Rgb], b: &[Rgb]) -> f64 {
+    let area = || placed.world.elements.iter().map(|e| e.area);
+    let total: f64 = area().sum();
+    let of_channel = |c: usize| {
+        let square: f64 = area().enumerate().map(|(i, w)| w * (a[i][c] - b[i][c]).powi(2)).sum();
+        let mean = area().enumerate().map(|(i, w)| w * b[i][c]).sum::<f64>() / total;
+        if square == 0.0 { 0.0 } else { (square / total).sqrt() / mean }
+    };
+    (0..3).map(of_channel).fold(0.0, f64::max)
 }

@@ -113,6 +113,8 @@ pub struct RoundReport {
     pub residual: f64,
     /// No radiosity is further than this from the exact solution, W/m².
     pub error_bound: f64,
+    /// The share of the bound that comes from compressed form factors, W/m²; known after the last round.
+    pub compression: f64,
     /// The bound over the brightest radiosity.
     pub relative_bound: f64,
     /// Wall time.
@@ -158,6 +160,10 @@ pub struct Defect {
 pub struct Verify {
     /// Largest relative difference of any element's radiosity.
     pub max_rel_diff: f64,
+    /// Root mean square difference over the mean radiosity.
+    pub rms_rel_diff: f64,
+    /// Largest difference of any element's radiosity, W/m²: what the last round's bound must cover.
+    pub max_abs_diff: f64,
     /// Seconds for the classic form factors, summed over threads.
     pub form_factor_seconds: f64,
     /// Seconds for the classic solution.
@@ -211,8 +217,10 @@ impl Report {
         ));
         if let Some(verify) = &self.verify {
             lines.push(format!(
-                "classic matrix: largest relative difference {:.1e}; {:.2} s + {:.2} s, {} kept{}",
+                "classic matrix: largest relative difference {:.1e}, {:.1e} in the mean, {:.1e} W/m² at most; {:.2} s + {:.2} s, {} kept{}",
                 verify.max_rel_diff,
+                verify.rms_rel_diff,
+                verify.max_abs_diff,
                 verify.form_factor_seconds,
                 verify.solve_seconds,
                 bytes(verify.matrix_bytes),

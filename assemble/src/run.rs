@@ -1,7 +1,7 @@
 //! The whole run: scene → baked parts → coupling → exchange → outputs and report.
 
 use crate::account::{energy, refuse_endless_light, row_sum_defect};
-use crate::classic::{Classic, classic, largest_difference, whole_optics};
+use crate::classic::{Classic, classic, largest_difference, mean_difference, whole_optics};
 use crate::coupling::{Coupled, Coupler};
 use crate::exchange::{Goal, Method, Node, Outcome, exchange, nodes};
 use crate::outputs::{Light, check_writable, write_all};
@@ -69,7 +69,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     report.bytes.peak_rss = peak;
     report.seconds.total = start.elapsed().as_secs_f64();
     let left_undone = job.verify && classic.is_none();
-    report.verify = classic.map(|c| verification(&c, &outcome));
+    report.verify = classic.map(|c| verification(&placed, &c, &outcome));
     report.notes = [scene.notes, damage_notes(&store), intruder_notes(&placed, &coupled)].concat();
     if left_undone {
         report.notes.push("stopped: the classic matrix was not computed, so nothing was compared".into());
@@ -139,6 +139,7 @@ fn round_report(round: &crate::exchange::Round) -> RoundReport {
         round: round.number,
         residual: round.residual,
         error_bound: round.error_bound,
+        compression: round.compression,
         relative_bound: round.relative_bound,
         seconds: round.time.as_secs_f64(),
     }
@@ -195,9 +196,12 @@ fn memory(nodes: &[Node], elements: usize) -> Bytes {
     }
 }
 
-fn verification(classic: &Classic, outcome: &Outcome) -> Verify {
+fn verification(placed: &Placed, classic: &Classic, outcome: &Outcome) -> Verify {
+    let pairs = outcome.radiosity.iter().flatten().zip(classic.radiosity.iter().flatten());
     Verify {
         max_rel_diff: largest_difference(&outcome.radiosity, &classic.radiosity),
+        rms_rel_diff: mean_difference(placed, &outcome.radiosity, &classic.radiosity),
+        max_abs_diff: pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
         form_factor_seconds: classic.form_factor_time.as_secs_f64(),
         solve_seconds: classic.solve_time.as_secs_f64(),
         matrix_bytes: classic.matrix.bytes(),

@@ -13,13 +13,19 @@ pub struct World {
     pub elements: Vec<Element>,
     /// All faces: everything that blocks light.
     pub faces: Vec<Face>,
-    /// The plane that each face lies in.
-    pub planes: Vec<u32>,
+    planes: Planes,
     /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
     pub nodes: Vec<Node>,
     /// The faces and solids by place.
     pub occluders: Occluders,
     instances: Vec<Placed>,
+}
+
+/// The planes that faces lie in, by number, and the instances they belong to.
+struct Planes {
+    in_scene: Vec<u32>,
+    in_part: Vec<u32>,
+    instance: Vec<u32>,
 }
 
 /// Where an instance's things begin and end.
@@ -60,10 +66,13 @@ impl World {
     /// The world of geometries, each moved by its placement (a similarity).
     pub fn new<'a>(placed: impl IntoIterator<Item = (&'a Geometry, DAffine3)>) -> Self {
         let (mut elements, mut faces, mut nodes, mut instances) = (vec![], vec![], vec![], vec![]);
+        let (mut in_part, mut instance) = (vec![], vec![]);
         for (geometry, placement) in placed {
             let (first_element, first_face, first_node) = (elements.len(), faces.len() as u32, nodes.len());
             elements.extend(geometry.elements.iter().map(|e| place_element(e, placement, first_face)));
             faces.extend(geometry.faces.iter().map(|face| place_face(face, placement)));
+            in_part.extend(planes::group(&geometry.faces));
+            instance.resize(faces.len(), instances.len() as u32);
             add_nodes(geometry, &elements[first_element..], &mut nodes);
             instances.push(Placed {
                 elements: first_element..elements.len(),
@@ -71,9 +80,17 @@ impl World {
                 root: geometry.clusters.root().map(|root| first_node + root),
             });
         }
-        let planes = planes::group(&faces);
+        let planes = Planes { in_scene: planes::group(&faces), in_part, instance };
         let occluders = Occluders::new(&faces);
         Self { elements, faces, planes, nodes, occluders, instances }
+    }
+
+    /// Whether two faces lie in one plane, so that neither lights or hides anything of the other. Within an instance
+    /// the part's own coordinates decide, so that every scene decides as the part alone does.
+    pub fn coplanar(&self, a: FaceId, b: FaceId) -> bool {
+        let Planes { in_scene, in_part, instance } = &self.planes;
+        let (a, b) = (a.index(), b.index());
+        if instance[a] == instance[b] { in_part[a] == in_part[b] } else { in_scene[a] == in_scene[b] }
     }
 
     /// The elements of the `instance`-th geometry.

@@ -121,6 +121,22 @@ impl ClusterTree {
         }
     }
 
+    /// Append to `nodes` how far the values of the elements inside each node are from its mean, at most; nothing for
+    /// elements. `means` holds the values of all nodes.
+    pub fn append_spreads(&self, means: &[Rgb], nodes: &mut Vec<Rgb>) {
+        let mut ranges: Vec<[Rgb; 2]> = means.iter().map(|&value| [value; 2]).collect();
+        for (cluster, pair) in self.children.iter().enumerate().rev() {
+            let [left, right] = pair.map(|child| ranges[child as usize]);
+            let low = std::array::from_fn(|c| left[0][c].min(right[0][c]));
+            let high = std::array::from_fn(|c| left[1][c].max(right[1][c]));
+            ranges[self.elements() + cluster] = [low, high];
+        }
+        let spread = |(mean, [low, high]): (&Rgb, [Rgb; 2])| {
+            std::array::from_fn(|c| (high[c] - mean[c]).max(mean[c] - low[c]))
+        };
+        nodes.extend(means.iter().zip(ranges).map(spread));
+    }
+
     /// The values of all nodes, from those of the elements.
     pub fn means(&self, elements: &[Rgb]) -> Vec<Rgb> {
         let mut nodes = Vec::with_capacity(self.nodes());

@@ -150,6 +150,14 @@ impl Rows {
         self.groups.len() * size_of::<Extent>() + self.columns.len() * 4 + values
     }
 
+    /// No entry of a row is further than this from what was computed: a step, or nothing.
+    pub fn step_of(&self, receiver: usize) -> f64 {
+        match &self.values {
+            Values::Full(_) => 0.0,
+            Values::Steps { unit, .. } => unit[receiver],
+        }
+    }
+
     /// Number of groups; groups are independent and together give all rows in order.
     pub fn groups(&self) -> usize {
         self.groups.len() - 1

@@ -2,5 +2,6 @@
 //! computes them, and nothing computed twice.
 
 mod bytes;
+mod compressed;
 mod reuse;
 mod split;

@@ -7,7 +7,7 @@ mod sweep;
 
 use crate::coupling::Coupled;
 use crate::placed::Placed;
-use bound::{Margin, residual};
+use bound::{Margin, compression, residual};
 use equilux_bake::equilibrium::{LocalSystem, added, largest, scaled};
 use equilux_bake::monitor::Monitor;
 use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
@@ -54,6 +54,8 @@ pub struct Round {
     pub residual: f64,
     /// No radiosity is further than this from the exact solution, W/m².
     pub error_bound: f64,
+    /// What compressed form factors add to the bound, W/m²; worked out after the last round, then part of the bound.
+    pub compression: f64,
     /// The bound over the brightest radiosity.
     pub relative_bound: f64,
     /// Wall time of the round.
@@ -142,6 +144,7 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
             number: rounds.len() + 1,
             residual: residual.iter().flatten().flatten().fold(0.0, |most: f64, r| most.max(r.abs())),
             error_bound,
+            compression: 0.0,
             relative_bound,
             time: start.elapsed(),
             radiosity: state.flat(),
@@ -150,6 +153,14 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
         if stalled {
             converged = goal.error == 0.0;
             break;
+        }
+    }
+    if let Some(last) = rounds.last_mut() {
+        last.compression = margin.bound(&compression(nodes, &state.radiosity));
+        let brightest = last.error_bound / last.relative_bound;
+        last.error_bound += last.compression;
+        if last.relative_bound > 0.0 {
+            last.relative_bound = last.error_bound / brightest;
         }
     }
     let irradiance = state.irradiance(nodes).concat();

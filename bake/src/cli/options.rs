@@ -3,7 +3,7 @@
 use crate::bisect::Cut;
 use crate::elements::ElementSize;
 use crate::prepare::{Division, Preparation};
-use crate::treecode::EXACT;
+use crate::treecode::Resolution;
 use clap::{Args, ValueEnum};
 use equilux_formats::LocalSolver;
 use std::path::PathBuf;
@@ -17,7 +17,8 @@ pub struct SceneOptions {
     /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
     #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]
     pub element_size: Option<ElementSize>,
-    /// How much an answer may err by compressing form factors; 0 keeps every one of them
+    /// About how much the answer may err, relative to its mean, by exact entries for clusters of elements; 0 keeps
+    /// every element's
     #[arg(long, value_name = "EPS", default_value = "0", value_parser = tolerance)]
     pub tolerance: f64,
     /// Make parts by planes: this many cells, each time the largest cut at the median of its longest axis
@@ -70,7 +71,12 @@ impl SceneOptions {
             None => Division::Cuts(self.cut.clone()),
         };
         let local_solver = self.local_solver.map(LocalSolver::from);
-        Preparation { element_size: self.element_size, division, resolution: EXACT, local_solver }
+        Preparation {
+            element_size: self.element_size,
+            division,
+            resolution: Resolution::for_tolerance(self.tolerance),
+            local_solver,
+        }
     }
 
     /// Use the number of threads asked for.
@@ -94,7 +100,7 @@ fn element_size(text: &str) -> Result<ElementSize, String> {
 
 fn tolerance(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(0.0) => Ok(0.0),
-        _ => Err("every form factor is kept: the only tolerance there is now is 0".into()),
+        Ok(tolerance) if (0.0..1.0).contains(&tolerance) => Ok(tolerance),
+        _ => Err("a tolerance is a number from 0, which keeps every form factor, to below 1".into()),
     }
 }

@@ -7,7 +7,7 @@
 use super::contour;
 use super::polygon::{Polygon, Pyramid, Side, clip};
 use crate::world::World;
-use equilux_formats::{Element, Face};
+use equilux_formats::{Element, Face, FaceId};
 use glam::DVec3;
 
 /// How close to a plane, relative to the distance, a point counts as lying in it. A point in a sender's plane sees
@@ -19,14 +19,14 @@ pub const IN_PLANE: f64 = 1e-12;
 /// unit, 0..1. Faces in the plane of either end hide nothing of it.
 pub fn form_factor(world: &World, receiver: usize, sender: usize) -> f64 {
     let (receiver, sender) = (&world.elements[receiver], &world.elements[sender]);
-    let ends = [receiver, sender].map(|element| world.planes[element.face.index()]);
-    if ends[0] == ends[1] {
+    let ends = [receiver.face, sender.face];
+    if world.coplanar(ends[0], ends[1]) {
         return 0.0;
     }
     let Some(polygon) = visible_side(receiver, sender) else { return 0.0 };
     let mut pieces = vec![polygon];
-    for (occluder, plane) in world.faces.iter().zip(&world.planes) {
-        if ends.contains(plane) {
+    for (number, occluder) in world.faces.iter().enumerate() {
+        if ends.iter().any(|&end| world.coplanar(end, FaceId::from_index(number))) {
             continue;
         }
         let Some(pyramid) = hidden_pyramid(receiver.centroid, occluder, sender) else { continue };

@@ -6,7 +6,7 @@ use crate::occluders::Occluder;
 use crate::shaft::Shaft;
 use crate::visibility::Inside;
 use crate::world::{Node, World};
-use equilux_formats::Face;
+use equilux_formats::{Face, FaceId};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -121,8 +121,8 @@ struct Between<'a> {
     receivers: &'a Receivers,
     sender: &'a Node,
     shaft: Shaft,
-    /// Plane and occluder of a flat sender.
-    sender_plane: Option<u32>,
+    /// Face and occluder of a flat sender.
+    sender_face: Option<FaceId>,
     sender_occluder: Option<u32>,
 }
 
@@ -138,7 +138,7 @@ impl<'a> Between<'a> {
             receivers,
             sender,
             shaft,
-            sender_plane: sender.side.map(|side| world.planes[side.face.index()]),
+            sender_face: sender.side.map(|side| side.face),
             sender_occluder: sender.side.map(|side| world.occluders.of_face[side.face.index()]),
         }
     }
@@ -151,8 +151,9 @@ impl<'a> Between<'a> {
                 return true;
             }
         } else {
-            let plane = self.world.planes[occluder.faces[0] as usize];
-            if plane == self.receivers.plane || Some(plane) == self.sender_plane {
+            let face = FaceId(occluder.faces[0]);
+            let ends = [Some(self.receivers.face), self.sender_face];
+            if ends.into_iter().flatten().any(|end| self.world.coplanar(end, face)) {
                 return true;
             }
         }

@@ -4,6 +4,7 @@ use crate::form_factor::plain::IN_PLANE;
 use crate::form_factor::polygon::{Polygon, convex_hull};
 use crate::form_factor::wide::Points;
 use crate::world::{Node, World};
+use equilux_formats::FaceId;
 use glam::DVec3;
 use std::ops::Range;
 
@@ -53,8 +54,8 @@ pub struct Receivers {
     pub hull: Polygon,
     /// Box around the points.
     pub bounds: (DVec3, DVec3),
-    /// The plane they lie in, by number.
-    pub plane: u32,
+    /// The face they lie in.
+    pub face: FaceId,
     /// The occluder they lie on.
     pub occluder: u32,
     /// Largest extent.
@@ -76,7 +77,7 @@ impl Receivers {
         Self {
             hull,
             bounds: (low, high),
-            plane: world.planes[first.face.index()],
+            face: first.face,
             occluder: world.occluders.of_face[first.face.index()],
             diameter: (high - low).length(),
             points: Points::new(points, first.normal),
@@ -104,7 +105,7 @@ impl Receivers {
             return true;
         }
         let Some(side) = sender.side else { return false };
-        if world.planes[side.face.index()] == self.plane {
+        if world.coplanar(side.face, self.face) {
             return true;
         }
         let corner = world.faces[side.face.index()].corners[0];

@@ -10,6 +10,7 @@ use crate::form_factor::plain::IN_PLANE;
 use crate::form_factor::polygon::{Hides, Polygon, Pyramid, Side, clip};
 use crate::occluders::face_pyramid;
 use crate::world::{Node, World};
+use equilux_formats::FaceId;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -113,7 +114,6 @@ impl<'a> Evaluator<'a> {
         self.between.clear();
         let side = sender.side.expect("a sender with an outline is flat");
         let corner = sender.polygon[0];
-        let plane = self.world.planes[side.face.index()];
         for entry in occluders {
             let Entry::Occluder(index) = *entry else { unreachable!("lists of terminals are opened") };
             let occluder = &self.world.occluders.all[index as usize];
@@ -137,7 +137,7 @@ impl<'a> Evaluator<'a> {
                 continue;
             }
             for &face in &occluder.faces {
-                if self.world.planes[face as usize] == plane {
+                if self.world.coplanar(FaceId(face), side.face) {
                     continue;
                 }
                 let face = &self.world.faces[face as usize];
