@@ -6,7 +6,7 @@ use equilux_bake::gltf_import::import_scene;
 use equilux_bake::prepare::Division;
 use equilux_formats::{LocalSolver, Part, Rows};
 use equilux_tests::model::Node;
-use equilux_tests::shapes::{fine, grey, joined, mesh, moved, part, quad, room, self_block, solid};
+use equilux_tests::shapes::{fine, grey, joined, moved, part, quad, room, self_block, solid};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
 
