@@ -1,7 +1,7 @@
 //! Files that are there whole or not at all. In goes a path and a closure that writes; out comes the file under its
 //! name, or the old one untouched.
 
-use equilux_formats::{Error, Result};
+use equilux_formats::{Error, Result, temporary_beside};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
@@ -26,15 +26,6 @@ fn try_write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
     drop(buffered);
     file.persist(path)?;
     Ok(())
-}
-
-/// A temporary file in the folder of `path` that others may read once it has its name, as the umask allows.
-fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")))
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use equilux_bake::oven::Baked;
 use equilux_bake::world::World;
-use equilux_formats::{Instance, Optics, Rgb};
+use equilux_formats::{Instance, Optics};
 
 /// The parts of a scene in their places.
 pub struct Placed {
@@ -33,10 +33,5 @@ impl Placed {
         let scale = self.instances[instance].emission_scale;
         let emission = optics.emission.iter().map(|e| e.map(|e| e * scale)).collect();
         Optics { reflectance: optics.reflectance.clone(), emission }
-    }
-
-    /// A per-instance array laid end to end, in the order of the world's elements.
-    pub fn flat(&self, by_instance: &[Vec<Rgb>]) -> Vec<Rgb> {
-        by_instance.concat()
     }
 }

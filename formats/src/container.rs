@@ -9,7 +9,7 @@ mod reader;
 mod writer;
 
 pub use reader::Reader;
-pub use writer::Writer;
+pub use writer::{Writer, temporary_beside};
 
 use crate::fingerprint::Manifest;
 use serde::{Deserialize, Serialize};

@@ -19,7 +19,7 @@ mod stored;
 
 pub use baked::{BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
 pub use clusters::ClusterTree;
-pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
+pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer, temporary_beside};
 pub use error::{Error, Result};
 pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics};

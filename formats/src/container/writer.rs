@@ -66,8 +66,9 @@ impl Writer {
     }
 }
 
-/// A temporary file in the folder of `path` that others may read once it has its name, as the umask allows.
-fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+/// A temporary file in the folder of `path` that others may read once it has its name, as the umask allows. Dropped before
+/// that, it is gone. Fails as the file system does.
+pub fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".").suffix(".tmp");
     #[cfg(unix)]
