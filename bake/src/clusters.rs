@@ -42,8 +42,10 @@ fn face_sides(elements: &[Element]) -> Vec<Side> {
         let front = *fronts.entry(element.face.0).or_insert(element.normal);
         back[i] = front.dot(element.normal) < 0.0;
     }
-    order.sort_by_key(|&i| (elements[i].face, back[i], i));
-    let same = |&a: &usize, &b: &usize| elements[a].face == elements[b].face && back[a] == back[b];
+    // A lamp let into a ceiling shares its face but not its light: materials do not mix in a cluster.
+    let key = |i: usize| (elements[i].face, back[i], elements[i].material);
+    order.sort_by_key(|&i| (key(i), i));
+    let same = |&a: &usize, &b: &usize| key(a) == key(b);
     let side = |run: &[usize]| Side {
         elements: run.to_vec(),
         centre: run.iter().map(|&i| elements[i].centroid).sum::<DVec3>() / run.len() as f64,

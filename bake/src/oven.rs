@@ -16,7 +16,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
-pub const KERNEL_VERSION: u32 = 2;
+pub const KERNEL_VERSION: u32 = 3;
 
 /// A baked part and how it came about.
 pub struct Baked {

@@ -3,7 +3,7 @@
 use crate::form_factor::polygon::{Polygon, convex_hull};
 use crate::occluders::Occluders;
 use crate::planes;
-use equilux_formats::{Element, Face, FaceId, Geometry};
+use equilux_formats::{Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
 use std::ops::Range;
 
@@ -60,6 +60,14 @@ pub struct Side {
     pub face: FaceId,
     /// Unit normal of this side.
     pub normal: DVec3,
+    /// The material of all that is meant: surfaces of different light are never one sender.
+    pub material: MaterialId,
+}
+
+impl Side {
+    fn is_as(&self, other: Self) -> bool {
+        self.face == other.face && self.material == other.material && self.normal.dot(other.normal) > 0.0
+    }
 }
 
 impl World {
@@ -173,14 +181,14 @@ fn element_node(element: &Element) -> Node {
         high: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
         area: element.area,
         children: None,
-        side: Some(Side { face: element.face, normal: element.normal }),
+        side: Some(Side { face: element.face, normal: element.normal, material: element.material }),
         polygon: corners.iter().copied().collect(),
     }
 }
 
 fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
     let side = match (left.side, right.side) {
-        (Some(l), Some(r)) if l.face == r.face && l.normal.dot(r.normal) > 0.0 => Some(l),
+        (Some(l), Some(r)) if l.is_as(r) => Some(l),
         _ => None,
     };
     let polygon = side.map_or_else(Polygon::new, |side| union(left, right, side.normal));

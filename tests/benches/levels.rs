@@ -1,15 +1,11 @@
-//! Whole furnished levels: what a row costs, takes and misses.
+//! Whole furnished levels: what a row costs, takes and misses, and by how much the light errs.
 //!
-//! `cargo bench -p equilux-tests --bench levels -- ROOMS SIZE OPENING…`, such as `6 0.25 1e-2 1e-3 0`: rooms, element size
-//! in metres, and openings of the treecode, 0 for the exact matrix.
+//! `cargo bench -p equilux-tests --bench levels -- ROOMS SIZE OPENING…`, such as `6 0.25 0 1e-2 1e-3`: rooms, element
+//! size in metres, and openings of the treecode, 0 for the exact matrix. The error of the light is against the first.
 
-use equilux_bake::elements::{ElementSize, subdivide};
-use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, Resolution, Timed, block};
-use equilux_bake::world::World;
-use equilux_formats::{Geometry, Precision};
-use equilux_tests::levels::furnished;
-use glam::DAffine3;
+use equilux_bake::treecode::{EXACT, Resolution};
+use equilux_formats::{Precision, Rgb};
+use equilux_tests::measure::Level;
 use std::time::Instant;
 
 fn main() {
@@ -18,39 +14,34 @@ fn main() {
         println!("usage: levels ROOMS SIZE OPENING…");
         return;
     };
-    let parts = furnished(rooms as usize);
-    let geometries: Vec<Geometry> = parts.iter().map(|p| subdivide(p, ElementSize::Metres(size))).collect();
-    let world = World::new(geometries.iter().map(|g| (g, DAffine3::IDENTITY)));
-    println!("{rooms} rooms, {} elements, {} faces", world.elements.len(), world.faces.len());
+    let level = Level::furnished(rooms as usize, size);
+    println!("{rooms} rooms, {} elements, {} faces", level.world.elements.len(), level.world.faces.len());
     println!(
-        "{:>8} {:>10} {:>12} {:>12} {:>10} {:>8}",
-        "opening", "µs a row", "entries", "B a row", "defect", "wall s"
+        "{:>8} {:>10} {:>12} {:>12} {:>10} {:>8} {:>8}",
+        "opening", "µs a row", "entries", "B a row", "defect", "error %", "wall s"
     );
+    let mut reference = None;
     for &opening in openings {
-        measure(&world, opening);
+        measure(&level, opening, &mut reference);
     }
 }
 
-fn measure(world: &World, opening: f64) {
+fn measure(level: &Level, opening: f64, reference: &mut Option<Vec<Rgb>>) {
     let resolution = if opening == 0.0 { EXACT } else { Resolution { opening, precision: Precision::Steps } };
-    let everyone: Vec<usize> = (0..world.instances()).collect();
     let start = Instant::now();
-    let (mut seconds, mut stored, mut bytes, mut defect) = (0.0, 0, 0, 0.0f64);
-    for &receivers in &everyone {
-        let columns = 0..world.nodes.len();
-        let request = Request { world, receivers, senders: &everyone, columns, already: None, resolution };
-        let Timed { block, row_sums, time } = block(&request, &Monitor::default()).expect("nobody stops it");
-        seconds += time.as_secs_f64();
-        stored += block.stored();
-        bytes += block.bytes();
-        defect = row_sums.iter().map(|sum| (sum - 1.0).abs()).fold(defect, f64::max);
-    }
-    let rows = world.elements.len() as f64;
+    let rows = level.rows(resolution);
+    let wall = start.elapsed().as_secs_f64();
+    let radiosity = level.radiosity(&rows.blocks, 1e-6);
+    let error = level.difference(&radiosity, reference.get_or_insert_with(|| radiosity.clone()));
+    let count = level.world.elements.len() as f64;
+    let stored: usize = rows.blocks.iter().map(|b| b.stored()).sum();
+    let bytes: usize = rows.blocks.iter().map(|b| b.bytes()).sum();
     println!(
-        "{opening:>8.0e} {:>10.0} {:>12.0} {:>12.0} {defect:>10.0e} {:>8.2}",
-        seconds * 1e6 / rows,
-        stored as f64 / rows,
-        bytes as f64 / rows,
-        start.elapsed().as_secs_f64()
+        "{opening:>8.0e} {:>10.1} {:>12.0} {:>12.0} {:>10.0e} {:>8.3} {wall:>8.2}",
+        rows.time.as_secs_f64() * 1e6 / count,
+        stored as f64 / count,
+        bytes as f64 / count,
+        rows.defect,
+        error * 100.0,
     );
 }

@@ -11,7 +11,7 @@ mod receivers;
 mod terminal;
 
 use crate::monitor::Monitor;
-use crate::world::World;
+use crate::world::{Node, World};
 use candidates::{Candidates, Verdict};
 use equilux_formats::{Precision, RowGroup, Rows};
 use rayon::prelude::*;
@@ -118,6 +118,10 @@ const COMPLETE: f64 = 1e-12;
 /// The same where entries stand for clusters anyway.
 const NEARLY_COMPLETE: f64 = 1e-6;
 
+/// How much wider clusters open that nothing stands before, found by measuring: it gives all links the same share of the
+/// error in furnished rooms.
+const CLEAR: f64 = 5.0;
+
 /// One cluster of receivers looking for its senders.
 struct Search<'a> {
     request: &'a Request<'a>,
@@ -190,7 +194,7 @@ impl<'a> Search<'a> {
             Verdict::Between(kept) => kept,
         };
         match sender.children {
-            Some(children) if !self.is_small(sender) => {
+            Some(children) if !self.is_small(sender, kept.is_empty()) => {
                 children.into_iter().for_each(|child| self.open(child, kept.clone()));
             }
             _ => self.take(node, kept),
@@ -198,8 +202,9 @@ impl<'a> Search<'a> {
     }
 
     /// Whether a cluster may have one entry: it is a polygon, and its form factor times its size over its distance is
-    /// small. What an entry errs by is this product times how much the radiosity varies within the cluster.
-    fn is_small(&self, sender: &crate::world::Node) -> bool {
+    /// small. What an entry errs by is this product times how much the radiosity varies within the cluster. That is
+    /// more where something stands between, because what is hidden often has other light than what is not.
+    fn is_small(&self, sender: &Node, clear: bool) -> bool {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {
             return false;
         }
@@ -209,7 +214,8 @@ impl<'a> Search<'a> {
             return false;
         }
         let form_factor = sender.area / (std::f64::consts::PI * distance * distance);
-        form_factor * radius / distance <= self.request.resolution.opening
+        let opening = self.request.resolution.opening * if clear { CLEAR } else { 1.0 };
+        form_factor * radius / distance <= opening
     }
 
     /// One entry for the sender: its form factor for every receiver.
