@@ -2,6 +2,7 @@
 
 use assert_cmd::Command;
 use equilux_assemble::exchange::{Goal, Method};
+use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
 use equilux_assemble::run::{Job, run};
 use equilux_bake::elements::ElementSize;
@@ -72,6 +73,7 @@ impl Workshop {
             },
             method: Method::Jacobi,
             goal: Goal { error: 0.0, rounds: usize::MAX },
+            exact_rows: ExactRows::About(256),
             verify: false,
             elements: None,
         }

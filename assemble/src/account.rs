@@ -3,6 +3,7 @@
 use crate::exchange::Node;
 use crate::placed::Placed;
 use crate::report::{Defect, Energy};
+use equilux_bake::equilibrium::added;
 use equilux_bake::equilibrium::endless::endless_light;
 use equilux_formats::{Error, Optics, Result, Rgb};
 use std::path::Path;
@@ -19,6 +20,24 @@ pub fn energy(placed: &Placed, optics: &Optics, radiosity: &[Rgb], irradiance: &
         }
     }
     account
+}
+
+/// The mean over the scene's area, channel by channel.
+pub fn mean_over_area(placed: &Placed, values: &[Rgb]) -> Rgb {
+    let (mut sum, mut total) = ([0.0; 3], 0.0);
+    for (element, value) in placed.world.elements.iter().zip(values) {
+        sum = added(sum, value.map(|v| v * element.area));
+        total += element.area;
+    }
+    sum.map(|sum| sum / total)
+}
+
+/// The root of the mean square of `values` over the mean of `unit`, both over the scene's area; the worst channel.
+pub fn rms_over_mean(placed: &Placed, values: &[Rgb], unit: &[Rgb]) -> f64 {
+    let squares: Vec<Rgb> = values.iter().map(|v| v.map(|v| v * v)).collect();
+    let (squares, means) = (mean_over_area(placed, &squares), mean_over_area(placed, unit));
+    let of = |c: usize| if squares[c] == 0.0 { 0.0 } else { squares[c].sqrt() / means[c] };
+    (0..3).map(of).fold(0.0, f64::max)
 }
 
 /// How far the rows of the whole matrix are from summing to one.

@@ -1,7 +1,8 @@
 //! The classic matrix radiosity of the whole scene, on the same elements: what the parts must agree with.
 
+use crate::account::rms_over_mean;
 use crate::placed::Placed;
-use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise};
+use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{EXACT, Request, block};
 use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
@@ -83,12 +84,6 @@ pub fn largest_difference(a: &[Rgb], b: &[Rgb]) -> f64 {
 
 /// The root mean square difference over the mean of the second, weighted by area; the worst channel.
 pub fn mean_difference(placed: &Placed, a: &[Rgb], b: &[Rgb]) -> f64 {
-    let area = || placed.world.elements.iter().map(|e| e.area);
-    let total: f64 = area().sum();
-    let of_channel = |c: usize| {
-        let square: f64 = area().enumerate().map(|(i, w)| w * (a[i][c] - b[i][c]).powi(2)).sum();
-        let mean = area().enumerate().map(|(i, w)| w * b[i][c]).sum::<f64>() / total;
-        if square == 0.0 { 0.0 } else { (square / total).sqrt() / mean }
-    };
-    (0..3).map(of_channel).fold(0.0, f64::max)
+    let differences: Vec<Rgb> = a.iter().zip(b).map(|(&a, &b)| subtract(a, b)).collect();
+    rms_over_mean(placed, &differences, b)
 }

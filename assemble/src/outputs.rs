@@ -1,5 +1,4 @@
-//! Everything a run leaves in `out/<scene>/`: a picture of every round, of the end, of the elements, and the result as
-//! glTF.
+//! Everything a run leaves in `out/<scene>/`: pictures of rounds, of the end, of the elements, and the result as glTF.
 
 use crate::camera::View;
 use crate::canvas::Canvas;
@@ -70,9 +69,11 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     };
 
     let rounds = &light.outcome.rounds;
-    monitor.begin("pictures", rounds.len());
-    rounds.par_iter().try_for_each(|round| {
-        draw(&format!("round-{:03}.png", round.number), &round.radiosity)?;
+    let shown: Vec<(usize, &[Rgb])> =
+        rounds.iter().filter_map(|round| Some((round.number, round.radiosity.as_deref()?))).collect();
+    monitor.begin("pictures", shown.len());
+    shown.par_iter().try_for_each(|(number, radiosity)| {
+        draw(&picture_of(*number), radiosity)?;
         monitor.advance(1);
         Ok(())
     })?;
@@ -85,13 +86,15 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     written.push(edges);
     written.extend(write_tables(job, &folder, light, exposure)?);
     let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
-    if !rounds.is_empty() {
-        lines.insert(
-            0,
-            format!("{} to round-{:03}.png", folder.join("round-001.png").display(), rounds.len()),
-        );
+    if let Some((last, _)) = shown.last() {
+        let first = folder.join(picture_of(1));
+        lines.insert(0, format!("{} to {} ({} pictures)", first.display(), picture_of(*last), shown.len()));
     }
     Ok(lines)
+}
+
+fn picture_of(round: usize) -> String {
+    format!("round-{round:03}.png")
 }
 
 fn write_tables(job: &Job, folder: &Path, light: &Light, exposure: Exposure) -> Result<Vec<PathBuf>> {

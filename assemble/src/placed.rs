@@ -27,6 +27,11 @@ impl Placed {
         &self.parts[self.instances[instance].part.index()]
     }
 
+    /// Values of all elements as one vector an instance.
+    pub fn split<T: Clone>(&self, values: &[T]) -> Vec<Vec<T>> {
+        (0..self.instances.len()).map(|k| values[self.world.elements_of(k)].to_vec()).collect()
+    }
+
     /// Reflectance and emission of an instance's elements, its own emission scale applied.
     pub fn optics_of(&self, instance: usize) -> Optics {
         let optics = &self.part_of(instance).part.optics;

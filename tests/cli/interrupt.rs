@@ -29,7 +29,8 @@ fn an_interrupted_exchange_ends_after_the_round_and_writes_everything() {
         let names: Vec<_> =
             files.keys().map(|path| path.file_name().expect("a name").to_string_lossy()).collect();
         let pictures = names.iter().filter(|name| name.starts_with("round-")).count();
-        assert_eq!(pictures, rounds, "pictures of rounds");
+        let shown = (1..=rounds).filter(|&round| round <= 8 || round.is_power_of_two() || round == rounds);
+        assert_eq!(pictures, shown.count(), "pictures of {rounds} rounds");
         for name in ["final.png", "wireframe.png", "result.glb"] {
             assert!(names.iter().any(|n| n == name), "no {name} among {names:?}");
         }

@@ -5,7 +5,7 @@ use equilux_tests::rooms::furnished;
 use serde_json::Value;
 
 /// Keys that other programs rely on, as JSON pointers.
-const KEYS: [&str; 46] = [
+const KEYS: [&str; 57] = [
     "/scene",
     "/elements",
     "/parts/0/name",
@@ -52,6 +52,17 @@ const KEYS: [&str; 46] = [
     "/parts/3/stored",
     "/blocks/self_corrected",
     "/bytes/largest_block",
+    "/rounds/0/compression",
+    "/rounds/0/relative_bound",
+    "/error/proved",
+    "/error/proved_rms",
+    "/error/proved_from",
+    "/error/spread",
+    "/error/exact_rows/rows",
+    "/error/exact_rows/residual_max",
+    "/error/exact_rows/residual_max_rel",
+    "/error/exact_rows/residual_rms_rel",
+    "/error/exact_rows/estimated_rms_rel",
 ];
 
 fn object(arguments: &[&str], program: &str) -> Value {
@@ -67,7 +78,7 @@ fn object(arguments: &[&str], program: &str) -> Value {
 
 #[test]
 fn assemble_prints_one_object_with_every_key() {
-    let report = object(&["scene.glb", "--element-size", "1", "--json"], "assemble");
+    let report = object(&["scene.glb", "--element-size", "1", "--tolerance", "0.01", "--json"], "assemble");
     let missing: Vec<_> = KEYS.iter().filter(|key| report.pointer(key).is_none()).collect();
     assert!(missing.is_empty(), "missing {missing:?} in {report}");
     assert_eq!(report["scene"], "scene");
@@ -82,10 +93,12 @@ fn assemble_prints_one_object_with_every_key() {
 
 #[test]
 fn verify_adds_the_difference_to_the_object() {
-    let report = object(&["scene.glb", "--element-size", "1", "--verify", "--json"], "assemble");
+    let exact = ["scene.glb", "--element-size", "1", "--tolerance", "0", "--verify", "--json"];
+    let report = object(&exact, "assemble");
     let difference = report["verify"]["max_rel_diff"].as_f64();
     // How small it must be is asked elsewhere.
     assert!(difference.is_some_and(|d| d < 1e-6), "verify is {}", report["verify"]);
+    assert_eq!(report["error"]["proved_from"], "rounds", "an exact matrix has no clusters");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The files a run leaves, and the table of elements.
 
 use crate::workshop::Workshop;
-use equilux_tests::rooms::furnished;
+use equilux_tests::rooms::{echoing, furnished};
 use serde_json::Value;
 
 const HEADER: &str =
@@ -27,6 +27,18 @@ fn a_run_leaves_a_picture_of_each_round_and_the_result() {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let expected = [&["classic.png", "final.png", "result.glb"], &rounds[..2], &["wireframe.png"]].concat();
     assert_eq!(names(&workshop), expected);
+}
+
+#[test]
+fn of_many_rounds_the_first_eight_powers_of_two_and_the_last_have_pictures() {
+    let workshop = Workshop::with(&echoing(0.01));
+    let ended = workshop.run("assemble", &["scene.glb", "--element-size", "1", "--rounds", "21"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let rounds = [1, 2, 3, 4, 5, 6, 7, 8, 16, 21].map(|round| format!("round-{round:03}.png"));
+    let expected =
+        [&["final.png".into(), "result.glb".into()], &rounds[..], &["wireframe.png".into()]].concat();
+    assert_eq!(names(&workshop), expected);
+    assert!(ended.stdout.contains("round-001.png to round-021.png (10 pictures)"), "{}", ended.stdout);
 }
 
 #[test]

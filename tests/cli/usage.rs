@@ -40,6 +40,7 @@ fn a_wrong_command_line_is_exit_code_2_and_touches_nothing() {
     refused(&workshop, "assemble", &["scene.glb", "--exchange", "gossip"]);
     refused(&workshop, "assemble", &["scene.glb", "--error", "-1"]);
     refused(&workshop, "assemble", &["scene.glb", "--rounds", "few"]);
+    refused(&workshop, "assemble", &["scene.glb", "--exact-rows", "some"]);
     assert_eq!(
         workshop.files("").keys().collect::<Vec<_>>(),
         before.keys().collect::<Vec<_>>(),

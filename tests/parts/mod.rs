@@ -3,5 +3,6 @@
 
 mod bytes;
 mod compressed;
+mod left_out;
 mod reuse;
 mod split;

@@ -5,6 +5,7 @@
 mod table;
 
 use equilux_assemble::exchange::{Goal, Method};
+use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::run::{Job, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
@@ -71,6 +72,7 @@ fn assembled(scene: &Path) -> Table {
         },
         method: Method::Jacobi,
         goal: Goal { error: 1e-6, rounds: usize::MAX },
+        exact_rows: ExactRows::About(0),
         verify: false,
         elements: Some(elements.clone()),
     };

@@ -3,11 +3,12 @@
 //! B_k ← (I − ρF_kk)⁻¹ (E_k + ρ Σ_{l≠k} F_kl B_l). Debelov & Sevastyanov, §2.2.
 
 pub mod bound;
+mod gather;
 mod sweep;
 
 use crate::coupling::Coupled;
 use crate::placed::Placed;
-use bound::{Margin, compression, residual};
+use bound::{Margin, residual};
 use equilux_bake::equilibrium::{LocalSystem, added, largest, scaled};
 use equilux_bake::monitor::Monitor;
 use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
@@ -52,16 +53,14 @@ pub struct Round {
     pub number: usize,
     /// Largest residual, W/m².
     pub residual: f64,
-    /// No radiosity is further than this from the exact solution, W/m².
+    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m².
     pub error_bound: f64,
-    /// What compressed form factors add to the bound, W/m²; worked out after the last round, then part of the bound.
-    pub compression: f64,
     /// The bound over the brightest radiosity.
     pub relative_bound: f64,
     /// Wall time of the round.
     pub time: Duration,
-    /// Radiosity of all elements after the round, for the pictures.
-    pub radiosity: Vec<Rgb>,
+    /// Radiosity of all elements after the round, if there is to be a picture of it.
+    pub radiosity: Option<Vec<Rgb>>,
 }
 
 /// Time spent in the paper's steps 5 and 6 (local solves) and 7 and 8 (transfers), one entry an instance.
@@ -85,6 +84,17 @@ pub struct Outcome {
     pub times: StepTimes,
     /// Whether the goal was met.
     pub converged: bool,
+    /// What the rounds did not have to do.
+    pub spared: Spared,
+}
+
+/// What changes no radiosity and was left out of the rounds.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Spared {
+    /// Rows of black receivers, gathered once in the end.
+    pub black_rows: usize,
+    /// Local equilibria of instances in which nothing shone, all rounds together.
+    pub dark_solves: usize,
 }
 
 /// Rounding is reached when the bound is below the first number, relative to the brightest radiosity, and at least the
@@ -130,24 +140,25 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
     while rounds.len() < goal.rounds && !converged && !monitor.stopped() {
         let start = Instant::now();
         match method {
-            Method::Jacobi => state.jacobi(nodes, &mut times),
-            Method::GaussSeidel => state.gauss_seidel(nodes, &mut times),
+            Method::Jacobi => state.jacobi(&mut times),
+            Method::GaussSeidel => state.gauss_seidel(&mut times),
         }
-        let irradiance = state.irradiance(nodes);
-        let residual = residual(nodes, &state.radiosity, &irradiance);
+        let residual = residual(nodes, &state.radiosity, &state.irradiance());
         let error_bound = margin.bound(&residual);
         let brightest = largest(&state.flat()).into_iter().fold(0.0, f64::max);
         let relative_bound = if error_bound == 0.0 { 0.0 } else { error_bound / brightest };
         converged = relative_bound <= goal.error;
         let stalled = has_stalled(&rounds, relative_bound);
+        if let Some(before) = rounds.last_mut().filter(|round| !is_shown(round.number)) {
+            before.radiosity = None;
+        }
         rounds.push(Round {
             number: rounds.len() + 1,
             residual: residual.iter().flatten().flatten().fold(0.0, |most: f64, r| most.max(r.abs())),
             error_bound,
-            compression: 0.0,
             relative_bound,
             time: start.elapsed(),
-            radiosity: state.flat(),
+            radiosity: Some(state.flat()),
         });
         monitor.advance(1);
         if stalled {
@@ -155,16 +166,14 @@ pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -
             break;
         }
     }
-    if let Some(last) = rounds.last_mut() {
-        last.compression = margin.bound(&compression(nodes, &state.radiosity));
-        let brightest = last.error_bound / last.relative_bound;
-        last.error_bound += last.compression;
-        if last.relative_bound > 0.0 {
-            last.relative_bound = last.error_bound / brightest;
-        }
-    }
-    let irradiance = state.irradiance(nodes).concat();
-    Outcome { radiosity: state.flat(), irradiance, rounds, times, converged }
+    let spared = Spared { black_rows: state.waiting(), dark_solves: state.idle };
+    let irradiance = state.whole_irradiance().concat();
+    Outcome { radiosity: state.flat(), irradiance, rounds, times, converged, spared }
+}
+
+/// Whether there is to be a picture of this round even if it is not the last: of the first eight, then of powers of two.
+fn is_shown(round: usize) -> bool {
+    round <= 8 || round.is_power_of_two()
 }
 
 fn has_stalled(rounds: &[Round], bound: f64) -> bool {

@@ -1,5 +1,10 @@
 //! What a run says about itself: one JSON object for machines, tables for people.
 
+pub mod summary;
+mod text;
+
+pub use summary::{Run, summary};
+
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -24,8 +29,10 @@ pub struct Report {
     pub seconds: Seconds,
     /// The exchange, round by round.
     pub rounds: Vec<RoundReport>,
-    /// Whether the error asked for is proved.
+    /// Whether the error asked for is proved, of the exchange with the form factors as they are kept.
     pub converged: bool,
+    /// How far the answer is from that of the exact matrix.
+    pub error: ErrorReport,
     /// Memory.
     pub bytes: Bytes,
     /// Energy account of the final state.
@@ -70,7 +77,7 @@ pub struct Blocks {
     pub coupling_computed: usize,
     /// Coupling blocks taken from the cache.
     pub coupling_reused: usize,
-    /// Coupling blocks that hold nothing, by reason.
+    /// What was left out because it changes no radiosity, and how often, by reason.
     pub coupling_left_out: BTreeMap<String, usize>,
 }
 
@@ -111,13 +118,48 @@ pub struct RoundReport {
     pub round: usize,
     /// Largest residual, W/m².
     pub residual: f64,
-    /// No radiosity is further than this from the exact solution, W/m².
+    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m²; in the last
+    /// round, from that of the exact matrix.
     pub error_bound: f64,
-    /// The share of the bound that comes from compressed form factors, W/m²; known after the last round.
+    /// The share of the bound that comes from entries that stand for clusters, W/m²; known after the last round.
     pub compression: f64,
     /// The bound over the brightest radiosity.
     pub relative_bound: f64,
     /// Wall time.
+    pub seconds: f64,
+}
+
+/// How far radiosity is from that of the exact matrix, in which every entry is for one element.
+#[derive(Debug, Clone, Serialize)]
+pub struct ErrorReport {
+    /// No radiosity is further off, W/m²; null if nothing is proved.
+    pub proved: f64,
+    /// Root mean square of what is proved of each element, over the mean radiosity; the worst channel.
+    pub proved_rms: f64,
+    /// `rounds` where entries are for single elements; else `spread` of radiosity within clusters, or all `exact rows`.
+    pub proved_from: &'static str,
+    /// What the spread of radiosity within clusters alone proves, W/m².
+    pub spread: Option<f64>,
+    /// What exact rows of some receivers say, if there are any.
+    pub exact_rows: Option<ExactRowsReport>,
+}
+
+/// Residuals r = E + ρFB − B where the rows of F are exact. Unless they are all, they prove nothing of other elements.
+#[derive(Debug, Clone, Serialize)]
+pub struct ExactRowsReport {
+    /// Number of rows.
+    pub rows: usize,
+    /// Largest residual, W/m².
+    pub residual_max: f64,
+    /// Largest residual over the mean radiosity; the worst channel.
+    pub residual_max_rel: f64,
+    /// Root mean square residual over the mean radiosity; the worst channel.
+    pub residual_rms_rel: f64,
+    /// That over 1 − mean reflectance: an estimate of the root mean square error of B over its mean, mostly too large.
+    pub estimated_rms_rel: f64,
+    /// Form factors computed for it; they are not kept.
+    pub form_factors: usize,
+    /// Seconds for these, summed over threads.
     pub seconds: f64,
 }
 
@@ -180,139 +222,4 @@ pub fn peak_rss() -> Option<usize> {
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kilobytes * 1024)
-}
-
-impl Report {
-    /// The report for a person, a few lines and two tables.
-    pub fn text(&self) -> String {
-        let mut lines = vec![
-            format!(
-                "{}: {} elements ({}), {} parts in {} places",
-                self.scene,
-                self.elements,
-                self.element_size,
-                self.parts.len(),
-                self.instances
-            ),
-            self.blocks_line(),
-        ];
-        lines.extend(self.step_lines());
-        lines.extend(self.round_lines());
-        lines.push(format!(
-            "row sums: at most {:.1e} from 1, {:.1e} on average (open scenes stay below 1)",
-            self.row_sum_defect.max, self.row_sum_defect.mean
-        ));
-        lines.push(format!(
-            "memory: {} in blocks, largest {}; the classic matrix {}{}",
-            bytes(self.bytes.stored),
-            bytes(self.bytes.largest_block),
-            bytes(self.bytes.dense),
-            self.bytes.peak_rss.map_or(String::new(), |peak| format!("; peak {}", bytes(peak)))
-        ));
-        lines.push(format!(
-            "energy (W, RGB): emitted {}, absorbed {}, escaped {}",
-            rgb(self.energy.emitted),
-            rgb(self.energy.absorbed),
-            rgb(self.energy.escaped)
-        ));
-        if let Some(verify) = &self.verify {
-            lines.push(format!(
-                "classic matrix: largest relative difference {:.1e}, {:.1e} in the mean, {:.1e} W/m² at most; {:.2} s + {:.2} s, {} kept{}",
-                verify.max_rel_diff,
-                verify.rms_rel_diff,
-                verify.max_abs_diff,
-                verify.form_factor_seconds,
-                verify.solve_seconds,
-                bytes(verify.matrix_bytes),
-                verify.peak_rss.map_or(String::new(), |peak| format!(", peak {}", bytes(peak)))
-            ));
-        }
-        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
-        lines.extend(self.outputs.iter().map(|output| format!("wrote {output}")));
-        lines.join("\n") + "\n"
-    }
-
-    fn blocks_line(&self) -> String {
-        let blocks = &self.blocks;
-        let left_out: Vec<String> = blocks
-            .coupling_left_out
-            .iter()
-            .map(|(reason, count)| format!(", {count} left out ({reason})"))
-            .collect();
-        format!(
-            "own blocks: {} baked, {} reused, {} corrected for what stands inside; coupling: {} computed, {} reused{}; \
-             {} form factors computed",
-            blocks.self_baked,
-            blocks.self_reused,
-            blocks.self_corrected,
-            blocks.coupling_computed,
-            blocks.coupling_reused,
-            left_out.concat(),
-            self.form_factors_computed
-        )
-    }
-
-    fn step_lines(&self) -> Vec<String> {
-        let s = &self.seconds;
-        vec![
-            format!(
-                "{:<8}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
-                "step", 1, 2, 3, 4, 5, 6, 7, 8, "T1", "T2", "T3"
-            ),
-            format!(
-                "{:<8}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}",
-                "seconds",
-                s.step1,
-                s.step2,
-                s.step3,
-                s.step4,
-                s.step5,
-                s.step6,
-                s.step7,
-                s.step8,
-                s.t1,
-                s.t2,
-                s.t3
-            ),
-            format!("measured: {:.3} s in all with {} threads", s.total, rayon::current_num_threads()),
-        ]
-    }
-
-    /// The first rounds and the last; a thousand lines help nobody.
-    fn round_lines(&self) -> Vec<String> {
-        let mut lines = vec![format!(
-            "{:<8}{:>12}{:>14}{:>14}{:>10}",
-            "round", "residual", "bound W/m²", "relative", "seconds"
-        )];
-        let count = self.rounds.len();
-        for round in &self.rounds {
-            if round.round <= 12 || round.round + 3 > count {
-                lines.push(format!(
-                    "{:<8}{:>12.3e}{:>14.3e}{:>14.3e}{:>10.3}",
-                    round.round, round.residual, round.error_bound, round.relative_bound, round.seconds
-                ));
-            } else if round.round == 13 {
-                lines.push("…".into());
-            }
-        }
-        if !self.converged {
-            lines.push("the error asked for is not proved: stopped before, or rounding is reached".into());
-        }
-        lines
-    }
-}
-
-fn bytes(count: usize) -> String {
-    let mut value = count as f64;
-    for unit in ["B", "kB", "MB", "GB"] {
-        if value < 1000.0 || unit == "GB" {
-            return format!("{value:.3} {unit}").replace(".000 B", " B");
-        }
-        value /= 1000.0;
-    }
-    unreachable!("the last unit returns")
-}
-
-fn rgb(v: [f64; 3]) -> String {
-    format!("{:.4} {:.4} {:.4}", v[0], v[1], v[2])
 }

@@ -1,0 +1,162 @@
+//! Bounds that hold element by element. In go the form factors as they are kept and what an answer misses at most; out
+//! comes w with |B − B̃| ≤ w.
+//!
+//! A = I − ρF has no positive off-diagonal, so A⁻¹ ≥ 0, and A w ≥ |r| makes |A⁻¹ r| ≤ w (Berman & Plemmons 1994, ch. 6, on
+//! M-matrices). The constant θ = max |r_i|/(A1)_i is such a w, and w ← |r| + ρF w lowers it and leaves it one: from
+//! w ≥ |r| + ρF w =: w' follows w' ≥ |r| + ρF w'. F itself is not known where an entry stands for a cluster, but with the
+//! cluster's largest w in place of each F w only grows, and then all of this holds the more.
+
+use crate::exchange::Node;
+use equilux_bake::equilibrium::{added, apply, largest, scaled};
+use equilux_formats::{ClusterTree, Rgb, Rows};
+
+/// A search for senders ends when no more than this is missing of a row.
+const MISSED: f64 = 1e-6;
+
+/// Sweeps end when they lower the bound by less than this share, and after so many.
+const SWEEPS: (f64, usize) = (1e-3, 200);
+
+/// The form factors of a scene as they are kept.
+pub struct Kept<'a> {
+    nodes: &'a [Node<'a>],
+    /// Of each row, one vector an instance.
+    rounding: Vec<Vec<Rounding>>,
+}
+
+/// How an entry of a row may be off because it is kept in steps: by a step at most.
+#[derive(Clone, Copy)]
+struct Rounding {
+    /// Steps of the row in the instance's own block, and in its coupling.
+    steps: [f64; 2],
+    /// At most this many steps in all entries of the row together.
+    total: f64,
+}
+
+impl<'a> Kept<'a> {
+    /// The form factors that an exchange used.
+    pub fn of(nodes: &'a [Node<'a>]) -> Self {
+        let rows = |node: &Node| {
+            let rounding = |i| Rounding::of([node.self_block, node.coupling], i);
+            (0..node.self_block.receivers()).map(rounding).collect()
+        };
+        Self { nodes, rounding: nodes.iter().map(rows).collect() }
+    }
+
+    /// How far the light that clusters reflect, each as one radiosity, can be from what their elements reflect, W/m²: a
+    /// cluster of mean radiosity B̄ stands for Σ_j F_ij B_j = F_iC B̄ + Σ_j F_ij (B_j − B̄), and the second term is at most
+    /// F_iC max_j |B_j − B̄|. It adds up what mostly cancels.
+    pub fn spread(&self, radiosity: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+        let spreads = |(node, b): (&Node, &Vec<Rgb>)| {
+            let mut spreads = Vec::new();
+            node.clusters.append_spreads(&node.clusters.means(b), &mut spreads);
+            spreads
+        };
+        let spreads: Vec<Vec<Rgb>> = self.nodes.iter().zip(radiosity).map(spreads).collect();
+        // What an entry is off by goes with the mean and with the spread; neither is above the cluster's brightest.
+        let twice: Vec<Vec<Rgb>> =
+            radiosity.iter().map(|b| b.iter().map(|b| b.map(|b| 2.0 * b)).collect()).collect();
+        self.reflected(&spreads, &twice)
+    }
+
+    /// w with |A⁻¹ r| ≤ w for every r with |r| ≤ `sizes`, W/m², one vector an instance; infinite in a channel in which
+    /// it cannot be shown that every element takes light out of the scene.
+    pub fn enclose(&self, sizes: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+        let ones: Vec<Vec<Rgb>> = sizes.iter().map(|s| vec![[1.0; 3]; s.len()]).collect();
+        let theta = constant(sizes, &self.reflected_at_most(&ones));
+        let provable = theta.map(f64::is_finite);
+        let start = std::array::from_fn(|c| if provable[c] { theta[c] } else { 0.0 });
+        let mut w: Vec<Vec<Rgb>> = sizes.iter().map(|s| vec![start; s.len()]).collect();
+        let (share, most) = SWEEPS;
+        for _ in 0..most {
+            let before = total(&w);
+            let reflected = self.reflected_at_most(&w);
+            let rows = w.iter_mut().flatten().zip(sizes.iter().flatten()).zip(reflected.iter().flatten());
+            rows.for_each(|((w, &size), &more)| *w = smaller(*w, added(size, more)));
+            if total(&w) > (1.0 - share) * before {
+                break;
+            }
+        }
+        let unproved =
+            |w: &mut Rgb| *w = std::array::from_fn(|c| if provable[c] { w[c] } else { f64::INFINITY });
+        w.iter_mut().flatten().for_each(unproved);
+        w
+    }
+
+    /// ρF w at most, W/m², for w ≥ 0.
+    fn reflected_at_most(&self, w: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+        let maxima: Vec<Vec<Rgb>> =
+            self.nodes.iter().zip(w).map(|(node, w)| maxima(node.clusters, w)).collect();
+        self.reflected(&maxima, w)
+    }
+
+    /// ρF `values` (≥ 0, of all nodes of each instance) and what entries that are off or missing add to it at most where
+    /// the elements have the radiosities `rounded`; W/m².
+    fn reflected(&self, values: &[Vec<Rgb>], rounded: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+        let (all, elements) = (values.concat(), rounded.concat());
+        let (most, sum) = (largest(&elements), sum_of_sizes(&elements));
+        let of = |(k, node): (usize, &Node)| -> Vec<Rgb> {
+            let (own, others) = (apply(node.self_block, &values[k]), apply(node.coupling, &all));
+            let sums = [sum_of_sizes(&rounded[k]), sum];
+            let row = |i: usize| {
+                let off = self.rounding[k][i].of_radiosities(most, sums);
+                scaled(node.optics.reflectance[i], added(added(own[i], others[i]), off))
+            };
+            (0..own.len()).map(row).collect()
+        };
+        self.nodes.iter().enumerate().map(of).collect()
+    }
+}
+
+impl Rounding {
+    fn of(blocks: [&Rows; 2], receiver: usize) -> Self {
+        let steps = blocks.map(|block| block.step_of(receiver));
+        // Between two entries that are kept lie entries too small for a step, which together are less than one.
+        let entries = blocks.map(|block| (2 * block.row(receiver).count() + 1) as f64);
+        Self { steps, total: steps[0] * entries[0] + steps[1] * entries[1] }
+    }
+
+    /// What the row may gain or lose, W/m², where no sender is brighter than `most` and the senders of the two blocks
+    /// together have radiosities of these sums. No two entries of a row stand for the same element.
+    fn of_radiosities(self, most: Rgb, [own, all]: [Rgb; 2]) -> Rgb {
+        std::array::from_fn(|c| {
+            let off = (self.total * most[c]).min(self.steps[0] * own[c] + self.steps[1] * all[c]);
+            off + MISSED * most[c]
+        })
+    }
+}
+
+/// θ = max size_i / (1 − seen_i): infinite where an element that misses something keeps all its light.
+fn constant(sizes: &[Vec<Rgb>], seen: &[Vec<Rgb>]) -> Rgb {
+    let pairs = sizes.iter().flatten().zip(seen.iter().flatten());
+    let quotient = |size: f64, seen: f64| match size {
+        0.0 => 0.0,
+        _ if seen < 1.0 => size / (1.0 - seen),
+        _ => f64::INFINITY,
+    };
+    pairs.fold([0.0; 3], |most: Rgb, (size, seen)| {
+        std::array::from_fn(|c| most[c].max(quotient(size[c], seen[c])))
+    })
+}
+
+/// The values of all nodes: an element's own, the largest in a cluster.
+fn maxima(clusters: &ClusterTree, elements: &[Rgb]) -> Vec<Rgb> {
+    let mut values = elements.to_vec();
+    values.resize(clusters.nodes(), [0.0; 3]);
+    for (cluster, pair) in clusters.children().iter().enumerate().rev() {
+        let [left, right] = pair.map(|child| values[child as usize]);
+        values[elements.len() + cluster] = std::array::from_fn(|c| left[c].max(right[c]));
+    }
+    values
+}
+
+fn sum_of_sizes(values: &[Rgb]) -> Rgb {
+    values.iter().fold([0.0; 3], |sum, v| added(sum, v.map(f64::abs)))
+}
+
+fn smaller(a: Rgb, b: Rgb) -> Rgb {
+    std::array::from_fn(|c| a[c].min(b[c]))
+}
+
+fn total(values: &[Vec<Rgb>]) -> f64 {
+    values.iter().flatten().flatten().sum()
+}

@@ -1,0 +1,212 @@
+//! From the results of a run to its report.
+
+use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify, peak_rss};
+use crate::account::{energy, rms_over_mean, row_sum_defect};
+use crate::classic::{Classic, largest_difference, mean_difference};
+use crate::coupling::Coupled;
+use crate::exchange::{Node, Outcome, Round};
+use crate::placed::Placed;
+use crate::proof::{Measured, Proof};
+use crate::steps::seconds;
+use equilux_bake::equilibrium::largest;
+use equilux_bake::oven::Baked;
+use equilux_formats::Optics;
+use std::collections::BTreeMap;
+
+/// Reasons to leave something out, as they follow a count.
+pub const UNSEEN: &str = "couplings between parts that cannot see each other";
+/// Rows that wait for the end of the exchange.
+pub const BLACK_ROWS: &str = "rows of black receivers in every round, gathered once in the end";
+/// Local equilibria of instances in which nothing shone.
+pub const DARK_SOLVES: &str = "equilibria of parts in the dark";
+
+/// The results of a run.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    /// The parts in their places.
+    pub placed: &'a Placed,
+    /// What couples them, one entry an instance.
+    pub coupled: &'a [Coupled],
+    /// Their shares of the equation.
+    pub nodes: &'a [Node<'a>],
+    /// Optics of all elements.
+    pub optics: &'a Optics,
+    /// The exchange.
+    pub outcome: &'a Outcome,
+    /// What is known about the error that clusters make, if there are clusters.
+    pub proof: Option<&'a Proof>,
+    /// The classic solution, if asked for.
+    pub classic: Option<&'a Classic>,
+}
+
+/// All that the results tell; names, files, and what the system tells are left to the caller.
+pub fn summary(run: &Run) -> Report {
+    let Run { placed, coupled, nodes, optics, outcome, .. } = *run;
+    let elements = placed.world.elements.len();
+    let error = error(run);
+    Report {
+        scene: String::new(),
+        elements,
+        parts: placed.parts.iter().map(part_report).collect(),
+        instances: placed.instances.len(),
+        element_size: String::new(),
+        blocks: blocks(run),
+        form_factors_computed: form_factors_computed(placed, coupled),
+        seconds: seconds(placed, coupled, &outcome.times),
+        rounds: rounds(outcome, &error),
+        converged: outcome.converged,
+        error,
+        bytes: memory(nodes, elements),
+        energy: energy(placed, optics, &outcome.radiosity, &outcome.irradiance),
+        row_sum_defect: row_sum_defect(nodes),
+        verify: run.classic.map(|classic| verification(placed, classic, outcome)),
+        notes: intruder_notes(placed, coupled),
+        outputs: vec![],
+    }
+}
+
+fn part_report(baked: &Baked) -> PartReport {
+    PartReport {
+        name: baked.part.name.clone(),
+        elements: baked.part.geometry.elements.len(),
+        form_factors: if baked.form_factors.is_reused() { "reused" } else { "computed" },
+        reason: baked.form_factors.to_string(),
+        local_solver: format!("{:?}", baked.part.local.solver),
+        stored: baked.part.self_block.stored(),
+    }
+}
+
+fn rounds(outcome: &Outcome, error: &ErrorReport) -> Vec<RoundReport> {
+    let mut rounds: Vec<RoundReport> = outcome.rounds.iter().map(round_report).collect();
+    if let Some(last) = rounds.last_mut().filter(|_| error.spread.is_some()) {
+        let brightest = largest(&outcome.radiosity).into_iter().fold(0.0, f64::max);
+        last.compression = (error.proved - last.error_bound).max(0.0);
+        last.error_bound = error.proved;
+        last.relative_bound = if error.proved == 0.0 { 0.0 } else { error.proved / brightest };
+    }
+    rounds
+}
+
+fn round_report(round: &Round) -> RoundReport {
+    RoundReport {
+        round: round.number,
+        residual: round.residual,
+        error_bound: round.error_bound,
+        compression: 0.0,
+        relative_bound: round.relative_bound,
+        seconds: round.time.as_secs_f64(),
+    }
+}
+
+fn error(run: &Run) -> ErrorReport {
+    let (placed, radiosity) = (run.placed, &run.outcome.radiosity);
+    let most = |bound: &[[f64; 3]]| largest(bound).into_iter().fold(0.0, f64::max);
+    let Some(proof) = run.proof else {
+        let proved = run.outcome.rounds.last().map_or(f64::INFINITY, |round| round.error_bound);
+        let everywhere = vec![[proved; 3]; radiosity.len()];
+        let proved_rms = rms_over_mean(placed, &everywhere, radiosity);
+        return ErrorReport { proved, proved_rms, proved_from: "rounds", spread: None, exact_rows: None };
+    };
+    let measured = proof.measured.as_ref();
+    let all = measured.is_some_and(|measured| measured.rows == radiosity.len());
+    ErrorReport {
+        proved: most(&proof.bound),
+        proved_rms: rms_over_mean(placed, &proof.bound, radiosity),
+        proved_from: if all { "exact rows" } else { "spread" },
+        spread: Some(most(&proof.spread)),
+        exact_rows: measured.map(exact_rows),
+    }
+}
+
+fn exact_rows(measured: &Measured) -> ExactRowsReport {
+    ExactRowsReport {
+        rows: measured.rows,
+        residual_max: measured.largest,
+        residual_max_rel: measured.largest_over_mean,
+        residual_rms_rel: measured.rms_over_mean,
+        estimated_rms_rel: measured.estimate,
+        form_factors: measured.form_factors,
+        seconds: measured.time.as_secs_f64(),
+    }
+}
+
+fn blocks(run: &Run) -> Blocks {
+    let (placed, coupled) = (run.placed, run.coupled);
+    let baked = placed.parts.iter().filter(|part| !part.form_factors.is_reused()).count();
+    let corrected = coupled.iter().filter(|c| c.corrected.is_some()).count();
+    let mut blocks = Blocks {
+        self_baked: baked,
+        self_reused: placed.instances.len().saturating_sub(baked + corrected),
+        self_corrected: corrected,
+        ..Blocks::default()
+    };
+    let mut unseen = 0;
+    for (k, own) in coupled.iter().enumerate() {
+        let seen = seen_instances(placed, own);
+        unseen += placed.instances.len() - 1 - seen.iter().enumerate().filter(|&(l, s)| *s && l != k).count();
+        let seen = seen.iter().filter(|&&s| s).count();
+        if own.origin.is_reused() { blocks.coupling_reused += seen } else { blocks.coupling_computed += seen }
+    }
+    blocks.coupling_left_out = left_out(unseen, run);
+    blocks
+}
+
+fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
+    let spared = run.outcome.spared;
+    let counts = [(UNSEEN, unseen), (BLACK_ROWS, spared.black_rows), (DARK_SOLVES, spared.dark_solves)];
+    counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
+}
+
+/// Which instances a block's receivers see anything of.
+fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
+    let mut seen = vec![false; placed.instances.len()];
+    let of: Vec<usize> =
+        (0..seen.len()).flat_map(|l| std::iter::repeat_n(l, placed.world.nodes_of(l).len())).collect();
+    for receiver in 0..coupled.coupling.receivers() {
+        coupled.coupling.row(receiver).for_each(|(sender, _)| seen[of[sender]] = true);
+    }
+    seen
+}
+
+fn form_factors_computed(placed: &Placed, coupled: &[Coupled]) -> usize {
+    let own = placed.parts.iter().filter(|p| !p.form_factors.is_reused()).map(|p| p.part.self_block.stored());
+    let corrected = coupled.iter().filter_map(|c| c.corrected.as_ref());
+    let anew = corrected.filter(|c| !c.origin.is_reused()).map(|c| c.self_block.stored());
+    let coupling = coupled.iter().filter(|c| !c.origin.is_reused()).map(|c| c.coupling.stored());
+    own.chain(anew).chain(coupling).sum()
+}
+
+fn memory(nodes: &[Node], elements: usize) -> Bytes {
+    let sizes = || nodes.iter().flat_map(|n| [n.self_block.bytes(), n.coupling.bytes()]);
+    Bytes {
+        dense: elements * elements * size_of::<f64>(),
+        stored: sizes().sum(),
+        largest_block: sizes().max().unwrap_or(0),
+        peak_rss: None,
+    }
+}
+
+fn verification(placed: &Placed, classic: &Classic, outcome: &Outcome) -> Verify {
+    let pairs = outcome.radiosity.iter().flatten().zip(classic.radiosity.iter().flatten());
+    Verify {
+        max_rel_diff: largest_difference(&outcome.radiosity, &classic.radiosity),
+        rms_rel_diff: mean_difference(placed, &outcome.radiosity, &classic.radiosity),
+        max_abs_diff: pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
+        form_factor_seconds: classic.form_factor_time.as_secs_f64(),
+        solve_seconds: classic.solve_time.as_secs_f64(),
+        matrix_bytes: classic.matrix.bytes(),
+        peak_rss: peak_rss(),
+    }
+}
+
+fn intruder_notes(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
+    let name = |k: usize| format!("`{}`", placed.instances[k].name);
+    let note = |(k, own): (usize, &Coupled)| {
+        let corrected = own.corrected.as_ref()?;
+        let inside: Vec<String> = corrected.intruders.iter().map(|&i| name(i)).collect();
+        let how =
+            if corrected.origin.is_reused() { "taken corrected from the cache" } else { "computed anew" };
+        Some(format!("inside {} is {}: its own block was {how}", name(k), inside.join(", ")))
+    };
+    coupled.iter().enumerate().filter_map(note).collect()
+}

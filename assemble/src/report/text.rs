@@ -1,0 +1,173 @@
+//! The report for a person.
+
+use super::{ErrorReport, Report};
+
+impl Report {
+    /// The report for a person, a few lines and two tables.
+    pub fn text(&self) -> String {
+        let mut lines = vec![
+            format!(
+                "{}: {} elements ({}), {} parts in {} places",
+                self.scene,
+                self.elements,
+                self.element_size,
+                self.parts.len(),
+                self.instances
+            ),
+            self.blocks_line(),
+        ];
+        lines.extend(self.left_out_line());
+        lines.extend(self.step_lines());
+        lines.extend(self.round_lines());
+        lines.extend(self.error.lines(self.elements));
+        lines.push(format!(
+            "row sums: at most {:.1e} from 1, {:.1e} on average (open scenes stay below 1)",
+            self.row_sum_defect.max, self.row_sum_defect.mean
+        ));
+        lines.push(format!(
+            "memory: {} in blocks, largest {}; the classic matrix {}{}",
+            bytes(self.bytes.stored),
+            bytes(self.bytes.largest_block),
+            bytes(self.bytes.dense),
+            self.bytes.peak_rss.map_or(String::new(), |peak| format!("; peak {}", bytes(peak)))
+        ));
+        lines.push(format!(
+            "energy (W, RGB): emitted {}, absorbed {}, escaped {}",
+            rgb(self.energy.emitted),
+            rgb(self.energy.absorbed),
+            rgb(self.energy.escaped)
+        ));
+        if let Some(verify) = &self.verify {
+            lines.push(format!(
+                "classic matrix: largest relative difference {:.1e}, {:.1e} in the mean, {:.1e} W/m² at most; {:.2} s + {:.2} s, {} kept{}",
+                verify.max_rel_diff,
+                verify.rms_rel_diff,
+                verify.max_abs_diff,
+                verify.form_factor_seconds,
+                verify.solve_seconds,
+                bytes(verify.matrix_bytes),
+                verify.peak_rss.map_or(String::new(), |peak| format!(", peak {}", bytes(peak)))
+            ));
+        }
+        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
+        lines.extend(self.outputs.iter().map(|output| format!("wrote {output}")));
+        lines.join("\n") + "\n"
+    }
+
+    fn blocks_line(&self) -> String {
+        let blocks = &self.blocks;
+        format!(
+            "own blocks: {} baked, {} reused, {} corrected for what stands inside; coupling: {} computed, {} reused; \
+             {} form factors computed",
+            blocks.self_baked,
+            blocks.self_reused,
+            blocks.self_corrected,
+            blocks.coupling_computed,
+            blocks.coupling_reused,
+            self.form_factors_computed
+        )
+    }
+
+    fn left_out_line(&self) -> Option<String> {
+        let reasons = self.blocks.coupling_left_out.iter();
+        let counts: Vec<String> = reasons.map(|(reason, count)| format!("{count} {reason}")).collect();
+        (!counts.is_empty()).then(|| format!("left out: {}", counts.join("; ")))
+    }
+
+    fn step_lines(&self) -> Vec<String> {
+        let s = &self.seconds;
+        vec![
+            format!(
+                "{:<8}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
+                "step", 1, 2, 3, 4, 5, 6, 7, 8, "T1", "T2", "T3"
+            ),
+            format!(
+                "{:<8}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}",
+                "seconds",
+                s.step1,
+                s.step2,
+                s.step3,
+                s.step4,
+                s.step5,
+                s.step6,
+                s.step7,
+                s.step8,
+                s.t1,
+                s.t2,
+                s.t3
+            ),
+            format!("measured: {:.3} s in all with {} threads", s.total, rayon::current_num_threads()),
+        ]
+    }
+
+    /// The first rounds and the last; a thousand lines help nobody.
+    fn round_lines(&self) -> Vec<String> {
+        let mut lines = vec![format!(
+            "{:<8}{:>12}{:>14}{:>14}{:>10}",
+            "round", "residual", "bound W/m²", "relative", "seconds"
+        )];
+        let count = self.rounds.len();
+        for round in &self.rounds {
+            if round.round <= 12 || round.round + 3 > count {
+                lines.push(format!(
+                    "{:<8}{:>12.3e}{:>14.3e}{:>14.3e}{:>10.3}",
+                    round.round, round.residual, round.error_bound, round.relative_bound, round.seconds
+                ));
+            } else if round.round == 13 {
+                lines.push("…".into());
+            }
+        }
+        if !self.converged {
+            lines.push(
+                "the exchange did not come as near as asked: stopped before, or rounding is reached".into(),
+            );
+        }
+        lines
+    }
+}
+
+impl ErrorReport {
+    /// What is proved and what was measured of entries that stand for clusters.
+    fn lines(&self, elements: usize) -> Vec<String> {
+        let mut lines = Vec::new();
+        if self.spread.is_some() {
+            lines.push(format!(
+                "clusters: proved, no radiosity is off by more than {:.2e} W/m², {} of the mean in RMS (from {})",
+                self.proved,
+                percent(self.proved_rms),
+                self.proved_from
+            ));
+        }
+        if let Some(rows) = &self.exact_rows {
+            let whether = if rows.rows == elements { "all" } else { "a sample, which proves nothing" };
+            lines.push(format!(
+                "clusters: measured in {} exact rows ({whether}), residual {} of the mean in RMS, {} at most: \
+                 radiosity is off by about {}",
+                rows.rows,
+                percent(rows.residual_rms_rel),
+                percent(rows.residual_max_rel),
+                percent(rows.estimated_rms_rel),
+            ));
+        }
+        lines
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", 100.0 * share)
+}
+
+fn bytes(count: usize) -> String {
+    let mut value = count as f64;
+    for unit in ["B", "kB", "MB", "GB"] {
+        if value < 1000.0 || unit == "GB" {
+            return format!("{value:.3} {unit}").replace(".000 B", " B");
+        }
+        value /= 1000.0;
+    }
+    unreachable!("the last unit returns")
+}
+
+fn rgb(v: [f64; 3]) -> String {
+    format!("{:.4} {:.4} {:.4}", v[0], v[1], v[2])
+}
