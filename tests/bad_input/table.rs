@@ -26,8 +26,6 @@ fn cases() -> Vec<Case> {
     not_a_number.binary[4..8].copy_from_slice(&f32::NAN.to_le_bytes());
     let whole = square().bytes();
     let colour = "/materials/0/pbrMetallicRoughness/baseColorFactor";
-    let white = Material { reflectance: [1.0; 3], ..lamp([1.0; 3]) };
-    let furnace = Node::new("furnace", room(white, DVec3::ZERO, DVec3::ONE));
     vec![
         case("text", "once upon a time", ["glTF", "export"]),
         case("nothing", "", ["glTF", "export"]),
@@ -54,11 +52,14 @@ fn cases() -> Vec<Case> {
             square().with(colour, json!([1.5, 1, 1, 1])).bytes(),
             ["reflectance rho [1.5", "baseColorFactor"],
         ),
-        case(
-            "a furnace that never ends",
-            Model::of(&[furnace]).bytes(),
-            ["without end", "lower a base colour"],
-        ),
+        Case {
+            options: &["--element-size", "1", "--tolerance", "0"],
+            ..case(
+                "a furnace that never ends",
+                Model::of(&[furnace()]).bytes(),
+                ["without end", "lower a base colour"],
+            )
+        },
         case(
             "a part outside the folder",
             Model::of(&[Node::of_file("lamp", "../lamp.glb")]).bytes(),
@@ -100,6 +101,24 @@ fn scenes_that_cannot_be_are_refused_and_nothing_is_written() {
 /// A furnace is known only by its form factors, which may stay in the cache.
 fn is_input_or_cached(path: &std::path::Path) -> bool {
     path.ends_with("scene.glb") || path.extension().is_some_and(|ending| ending == "eqx")
+}
+
+/// A closed room that shines and reflects everything.
+fn furnace() -> Node {
+    let white = Material { reflectance: [1.0; 3], ..lamp([1.0; 3]) };
+    Node::new("furnace", room(white, DVec3::ZERO, DVec3::ONE))
+}
+
+#[test]
+fn clusters_do_not_open_a_furnace() {
+    let workshop = Workshop::with(&[furnace()]);
+    // Rows of a few clusters in steps sum to one only within some 1e-6.
+    for tolerance in ["0.3", "0.01"] {
+        let arguments = ["scene.glb", "--element-size", "0.1", "--tolerance", tolerance];
+        let ended = workshop.run("assemble", &arguments);
+        assert_eq!(ended.code, Some(1), "tolerance {tolerance}: {}", ended.stderr);
+        assert!(ended.stderr.contains("light grows without end"), "{}", ended.stderr);
+    }
 }
 
 #[test]

@@ -102,6 +102,14 @@ fn verify_adds_the_difference_to_the_object() {
 }
 
 #[test]
+fn by_default_radiosity_is_off_by_a_hundredth_of_its_mean_at_most() {
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/shadow/shadow.glb");
+    let report = object(&[scene, "--element-size", "mesh", "--verify", "--json"], "assemble");
+    let off = report["verify"]["rms_rel_diff"].as_f64().expect("a number");
+    assert!(off > 0.0 && off <= 0.01, "off by {off} of the mean");
+}
+
+#[test]
 fn bake_prints_one_object() {
     let batch = object(&["scene.glb", "--element-size", "1", "--json"], "bake");
     let parts = batch["files"][0]["parts"].as_array().expect("a list");

@@ -7,27 +7,31 @@ use std::path::PathBuf;
 
 #[test]
 fn outputs_and_cache_are_the_same_bytes_for_any_number_of_threads() {
+    for (tolerance, threads) in [("0.01", "2"), ("0", "4")] {
+        the_same_bytes(tolerance, threads);
+    }
+}
+
+fn the_same_bytes(tolerance: &str, threads: &str) {
     let workshop = Workshop::with(&furnished());
-    let one = files_made_with("1", &workshop);
+    let one = files_made_with(tolerance, "1", &workshop);
     let made = |ending: &str| one.keys().filter(|path| path.to_string_lossy().ends_with(ending)).count();
     for ending in [".eqx", "round-001.png", "final.png", "wireframe.png", "result.glb", "table.csv"] {
         assert!(made(ending) > 0, "nothing that ends in {ending} to compare among {:?}", one.keys());
     }
-    for threads in ["2", "4"] {
-        let many = files_made_with(threads, &workshop);
-        assert_eq!(
-            one.keys().collect::<Vec<_>>(),
-            many.keys().collect::<Vec<_>>(),
-            "files with 1 and {threads} threads"
-        );
-        let differing: Vec<_> =
-            one.iter().filter(|(path, bytes)| many[*path] != **bytes).map(|(p, _)| p).collect();
-        assert!(differing.is_empty(), "with {threads} threads other bytes than with 1: {differing:?}");
-    }
+    let many = files_made_with(tolerance, threads, &workshop);
+    let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&one), names(&many), "files with 1 and {threads} threads, tolerance {tolerance}");
+    let differing: Vec<_> =
+        one.iter().filter(|(path, bytes)| many[*path] != **bytes).map(|(p, _)| p).collect();
+    assert!(
+        differing.is_empty(),
+        "tolerance {tolerance}: with {threads} threads other bytes than with 1: {differing:?}"
+    );
 }
 
 /// All that a run from nothing writes, by paths relative to where it wrote.
-fn files_made_with(threads: &str, workshop: &Workshop) -> BTreeMap<PathBuf, Vec<u8>> {
+fn files_made_with(tolerance: &str, threads: &str, workshop: &Workshop) -> BTreeMap<PathBuf, Vec<u8>> {
     let made = "made";
     std::fs::create_dir(workshop.path(made)).expect("a new folder");
     let run = workshop.run(
@@ -42,6 +46,8 @@ fn files_made_with(threads: &str, workshop: &Workshop) -> BTreeMap<PathBuf, Vec<
             "4",
             "--threads",
             threads,
+            "--tolerance",
+            tolerance,
             "--cache",
             "made/cache",
             "--out",

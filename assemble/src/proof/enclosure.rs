@@ -8,13 +8,18 @@
 
 use crate::exchange::Node;
 use equilux_bake::equilibrium::{added, apply, largest, scaled};
-use equilux_formats::{ClusterTree, Rgb, Rows};
+use equilux_formats::{ClusterTree, Precision, Rgb, Rows};
 
 /// A search for senders ends when no more than this is missing of a row.
 const MISSED: f64 = 1e-6;
 
 /// Sweeps end when they lower the bound by less than this share, and after so many.
 const SWEEPS: (f64, usize) = (1e-3, 200);
+
+/// Whether entries may stand for clusters, in steps.
+pub fn is_compressed(nodes: &[Node]) -> bool {
+    nodes.iter().any(|node| node.self_block.precision() == Precision::Steps)
+}
 
 /// The form factors of a scene as they are kept.
 pub struct Kept<'a> {
@@ -40,6 +45,13 @@ impl<'a> Kept<'a> {
             (0..node.self_block.receivers()).map(rounding).collect()
         };
         Self { nodes, rounding: nodes.iter().map(rows).collect() }
+    }
+
+    /// What a row's sum is short of what the receiver sees, at most: what rounding takes from one entry it gives to the
+    /// next, so all entries of a block together are off by a step.
+    pub fn lack(&self, instance: usize, receiver: usize) -> f64 {
+        let [own, coupling] = self.rounding[instance][receiver].steps;
+        own + coupling + MISSED
     }
 
     /// How far the light that clusters reflect, each as one radiosity, can be from what their elements reflect, W/m²: a

@@ -10,10 +10,10 @@ use crate::account::mean_over_area;
 use crate::exchange::bound::residual;
 use crate::exchange::{Node, Outcome};
 use crate::placed::Placed;
-use enclosure::Kept;
+use enclosure::{Kept, is_compressed};
 use equilux_bake::equilibrium::added;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Precision, Rgb};
+use equilux_formats::Rgb;
 use exact_rows::{Residuals, residuals};
 use sample::{Chosen, ExactRows, choose};
 use std::time::Duration;
@@ -56,7 +56,7 @@ pub fn prove(
     wanted: ExactRows,
     monitor: &Monitor,
 ) -> Option<Proof> {
-    if nodes.iter().all(|n| n.self_block.precision() == Precision::Full) {
+    if !is_compressed(nodes) {
         return None;
     }
     let (radiosity, irradiance) = (placed.split(&outcome.radiosity), placed.split(&outcome.irradiance));

@@ -17,9 +17,9 @@ pub struct SceneOptions {
     /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
     #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]
     pub element_size: Option<ElementSize>,
-    /// About how much the answer may err, relative to its mean, by exact entries for clusters of elements; 0 keeps
-    /// every element's
-    #[arg(long, value_name = "EPS", default_value = "0", value_parser = tolerance)]
+    /// About how much the answer may err, relative to its mean, because small, far clusters of elements have one exact form
+    /// factor; 0 keeps that of every element
+    #[arg(long, value_name = "EPS", default_value = "0.01", value_parser = tolerance)]
     pub tolerance: f64,
     /// Make parts by planes: this many cells, each time the largest cut at the median of its longest axis
     #[arg(long, value_name = "N", conflicts_with = "cut", value_parser = clap::value_parser!(u32).range(1..=4096))]
