@@ -1,21 +1,40 @@
 //! The command line of `assemble`.
 
 use crate::exchange::{Goal, Method};
+use crate::plan::{Plan, plan};
 use crate::proof::sample::ExactRows;
 use crate::report::Report;
 use crate::run::{Job, run};
-use clap::{Parser, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use equilux_bake::cli::{options::SceneOptions, progress};
-use equilux_bake::monitor::Monitor;
+use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Assemble a scene from baked parts, let them exchange light until equilibrium, and write pictures and a report.
 #[derive(Parser)]
 #[command(name = "assemble", version, after_help = EXAMPLES)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 struct Arguments {
+    #[command(subcommand)]
+    command: Option<Task>,
+    #[command(flatten)]
+    assembly: Assembly,
+}
+
+/// What to do other than assemble.
+#[derive(Subcommand)]
+enum Task {
+    /// Say what the same command without `plan` would compute, reuse and leave out, and why
+    Plan(Assembly),
+}
+
+/// A scene, and how to assemble it.
+#[derive(Args)]
+struct Assembly {
     /// The scene, a .gltf or .glb file
-    scene: PathBuf,
+    #[arg(required = true)]
+    scene: Option<PathBuf>,
     #[command(flatten)]
     options: SceneOptions,
     /// Folder for the outputs; they go to DIR/<scene>/: pictures of the first eight rounds, of rounds
@@ -58,22 +77,21 @@ Examples:
   assemble scenes/shadow/shadow.glb                    pictures of its rounds in out/shadow/
   assemble scenes/house/house.gltf --element-size 0.3  a level from part files
   assemble scenes/wood/wood.glb --bisect 8 --verify    parts by planes, compared with the whole
+  assemble plan scenes/house/house.gltf                what would be computed, and why
 Ctrl-C ends the exchange after the current round; everything is still written.";
 
 /// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let monitor = progress::monitor_for_program();
-    let progress = progress::show(&monitor);
-    let outcome = assemble(&arguments, &monitor);
-    progress.finish();
-    match outcome {
-        Ok(report) if arguments.options.json => {
-            println!("{}", serde_json::to_string(&report).expect("a report is plain data"));
-            ExitCode::SUCCESS
+    let Arguments { command, assembly } = Arguments::parse();
+    let outcome = match command {
+        Some(Task::Plan(assembly)) => {
+            plan(&assembly.job()).map_err(Into::into).map(|plan| said(&assembly, &plan, Plan::text))
         }
-        Ok(report) => {
-            print!("{}", report.text());
+        None => assemble(&assembly).map(|report| said(&assembly, &report, Report::text)),
+    };
+    match outcome {
+        Ok(text) => {
+            print!("{text}");
             ExitCode::SUCCESS
         }
         Err(error) => {
@@ -83,27 +101,45 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn assemble(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Report> {
-    arguments.options.set_threads()?;
-    let default_error = if arguments.verify { 0.0 } else { 1e-6 };
-    let job = Job {
-        scene: arguments.scene.clone(),
-        cache: arguments.options.cache.clone(),
-        out: arguments.out.clone(),
-        preparation: arguments.options.preparation(),
-        method: match arguments.exchange {
-            Exchange::Jacobi => Method::Jacobi,
-            Exchange::GaussSeidel => Method::GaussSeidel,
-        },
-        goal: Goal {
-            error: arguments.error.unwrap_or(default_error),
-            rounds: arguments.rounds.unwrap_or(usize::MAX),
-        },
-        exact_rows: arguments.exact_rows,
-        verify: arguments.verify,
-        elements: arguments.elements.clone(),
-    };
-    Ok(run(&job, monitor)?)
+fn assemble(assembly: &Assembly) -> anyhow::Result<Report> {
+    assembly.options.set_threads()?;
+    let monitor = progress::monitor_for_program();
+    let progress = progress::show(&monitor);
+    let report = run(&assembly.job(), &monitor);
+    progress.finish();
+    Ok(report?)
+}
+
+/// What goes to stdout: for machines if they asked, else for people.
+fn said<T: Serialize>(assembly: &Assembly, what: &T, text: impl Fn(&T) -> String) -> String {
+    if assembly.options.json {
+        serde_json::to_string(what).expect("a report is plain data") + "\n"
+    } else {
+        text(what)
+    }
+}
+
+impl Assembly {
+    fn job(&self) -> Job {
+        let default_error = if self.verify { 0.0 } else { 1e-6 };
+        Job {
+            scene: self.scene.clone().expect("a task has a scene"),
+            cache: self.options.cache.clone(),
+            out: self.out.clone(),
+            preparation: self.options.preparation(),
+            method: match self.exchange {
+                Exchange::Jacobi => Method::Jacobi,
+                Exchange::GaussSeidel => Method::GaussSeidel,
+            },
+            goal: Goal {
+                error: self.error.unwrap_or(default_error),
+                rounds: self.rounds.unwrap_or(usize::MAX),
+            },
+            exact_rows: self.exact_rows,
+            verify: self.verify,
+            elements: self.elements.clone(),
+        }
+    }
 }
 
 fn exact_rows(text: &str) -> Result<ExactRows, String> {

@@ -3,14 +3,14 @@
 //! For each instance k: F_kl for all other instances l, as one block whose columns count through all nodes of the
 //! scene; and F_kk as baked, or computed anew with the intruders in place. Everything in the scene blocks.
 
-use crate::hull::Hull;
+use crate::hull::intruders;
 use crate::placed::Placed;
 use equilux_bake::cached::{Origin, cached};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{KERNEL_VERSION, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Request, Resolution, block};
 use equilux_formats::{
-    BakedLight, Content, Digest, Factors, LocalEquilibrium, Manifest, Result, Rows, Store,
+    BakedLight, Content, Digest, Factors, LocalEquilibrium, Lookup, Manifest, Result, Rows, Store, Stored,
 };
 use glam::DAffine3;
 use std::path::Path;
@@ -41,6 +41,20 @@ pub struct Corrected {
     /// Time spent on its form factors, summed over threads.
     pub time: Duration,
 }
+
+/// Where the blocks of an instance would come from.
+pub struct Foreseen {
+    /// The instances that stand inside.
+    pub intruders: Vec<usize>,
+    /// The origin of the self block with what stands inside, if anything does.
+    pub corrected: Option<Origin>,
+    /// The origin of the coupling.
+    pub coupling: Origin,
+}
+
+/// What the blocks are called in manifests and in the cache.
+const COUPLING: &str = "coupling";
+const CORRECTED: &str = "corrected self block";
 
 impl Coupled {
     /// The block that instance's own light goes through.
@@ -92,21 +106,24 @@ impl Coupler<'_> {
             already: Some(&seen),
             resolution: self.resolution,
         };
-        let Some((coupling, origin, _, time)) = self.block("coupling", &request)? else { return Ok(None) };
+        let Some((coupling, origin, _, time)) = self.block(COUPLING, &request)? else { return Ok(None) };
         Ok(Some(Coupled { coupling, origin, corrected, time }))
+    }
+
+    /// Where the blocks of an instance would come from. Computes none of them.
+    pub fn foresee(&self, instance: usize) -> Foreseen {
+        let origin = |what: &str| {
+            let manifest = self.manifest(instance, what);
+            foreseen::<Rows>(self.store, &self.name(instance, what), &manifest)
+        };
+        let intruders = self.intruders(instance);
+        let corrected = (!intruders.is_empty()).then(|| origin(CORRECTED));
+        Foreseen { intruders, corrected, coupling: origin(COUPLING) }
     }
 
     /// The instances with geometry inside the hull of this one.
     fn intruders(&self, instance: usize) -> Vec<usize> {
-        let hull = Hull::around(&self.placed.part_of(instance).part.geometry);
-        let inverse = self.placed.instances[instance].placement.inverse();
-        (0..self.placed.instances.len())
-            .filter(|&other| other != instance)
-            .filter(|&other| {
-                let to_part = inverse * self.placed.instances[other].placement;
-                self.placed.part_of(other).part.geometry.faces.iter().any(|face| hull.holds(face, to_part))
-            })
-            .collect()
+        intruders(&self.placed.instances, |k| &self.placed.part_of(k).part.geometry, instance)
     }
 
     /// The whole self block anew, with everything that stands inside.
@@ -119,7 +136,7 @@ impl Coupler<'_> {
             already: None,
             resolution: self.resolution,
         };
-        let Some((self_block, origin, key, time)) = self.block("corrected self block", &request)? else {
+        let Some((self_block, origin, key, time)) = self.block(CORRECTED, &request)? else {
             return Ok(None);
         };
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
@@ -171,6 +188,18 @@ impl Coupler<'_> {
             manifest = manifest.digest(format!("instance {number} ({})", other.name), seen.digest());
         }
         manifest
+    }
+}
+
+/// Where `cached` would take the thing from.
+fn foreseen<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> Origin {
+    match store.load::<T>(&manifest.key()) {
+        Lookup::Found(_) => Origin::Reused,
+        Lookup::Damaged(error) => Origin::Computed(format!("the cached file cannot be used ({error})")),
+        Lookup::Missing => Origin::Computed(match store.last_manifest(name) {
+            None => "never computed before".into(),
+            Some(old) => manifest.difference(&old).unwrap_or_else(|| "the cached file is gone".into()),
+        }),
     }
 }
 

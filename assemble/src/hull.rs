@@ -5,8 +5,23 @@
 
 use equilux_bake::form_factor::polygon::{Side, clip};
 use equilux_bake::planes::FLATNESS;
-use equilux_formats::{Face, Geometry};
+use equilux_formats::{Face, Geometry, Instance};
 use glam::{DAffine3, DVec3, dvec3};
+
+/// The instances with geometry inside the hull of one of them.
+pub fn intruders<'a>(
+    instances: &[Instance],
+    geometry: impl Fn(usize) -> &'a Geometry,
+    instance: usize,
+) -> Vec<usize> {
+    let hull = Hull::around(geometry(instance));
+    let inverse = instances[instance].placement.inverse();
+    let intrudes = |other: usize| {
+        let to_part = inverse * instances[other].placement;
+        geometry(other).faces.iter().any(|face| hull.holds(face, to_part))
+    };
+    (0..instances.len()).filter(|&other| other != instance && intrudes(other)).collect()
+}
 
 /// A convex region around a part, in the part's coordinates.
 pub struct Hull {

@@ -19,6 +19,7 @@ pub mod output_file;
 mod outputs;
 pub mod picture;
 pub mod placed;
+pub mod plan;
 pub mod proof;
 pub mod report;
 pub mod run;

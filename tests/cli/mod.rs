@@ -5,4 +5,5 @@ mod explain;
 mod interrupt;
 mod json;
 mod outputs;
+mod plan;
 mod usage;

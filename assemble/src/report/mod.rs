@@ -1,7 +1,7 @@
 //! What a run says about itself: one JSON object for machines, tables for people.
 
 pub mod summary;
-mod text;
+pub mod text;
 
 pub use summary::{Run, summary};
 

@@ -19,6 +19,8 @@ pub const UNSEEN: &str = "couplings between parts that cannot see each other";
 pub const BLACK_ROWS: &str = "rows of black receivers in every round, gathered once in the end";
 /// Local equilibria of instances in which nothing shone.
 pub const DARK_SOLVES: &str = "equilibria of parts in the dark";
+/// Own blocks of instances that another instance of the same part has.
+pub const SHARED: &str = "own blocks that equal parts share";
 
 /// The results of a run.
 #[derive(Clone, Copy)]
@@ -153,7 +155,13 @@ fn blocks(run: &Run) -> Blocks {
 
 fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
     let spared = run.outcome.spared;
-    let counts = [(UNSEEN, unseen), (BLACK_ROWS, spared.black_rows), (DARK_SOLVES, spared.dark_solves)];
+    let shared = run.placed.instances.len() - run.placed.parts.len();
+    let counts = [
+        (UNSEEN, unseen),
+        (BLACK_ROWS, spared.black_rows),
+        (DARK_SOLVES, spared.dark_solves),
+        (SHARED, shared),
+    ];
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
 }
 

@@ -1,6 +1,7 @@
 //! The report for a person.
 
 use super::{ErrorReport, Report};
+use std::collections::BTreeMap;
 
 impl Report {
     /// The report for a person, a few lines and two tables.
@@ -16,7 +17,7 @@ impl Report {
             ),
             self.blocks_line(),
         ];
-        lines.extend(self.left_out_line());
+        lines.extend(left_out_line(&self.blocks.coupling_left_out));
         lines.extend(self.step_lines());
         lines.extend(self.round_lines());
         lines.extend(self.error.lines(self.elements));
@@ -66,12 +67,6 @@ impl Report {
             blocks.coupling_reused,
             self.form_factors_computed
         )
-    }
-
-    fn left_out_line(&self) -> Option<String> {
-        let reasons = self.blocks.coupling_left_out.iter();
-        let counts: Vec<String> = reasons.map(|(reason, count)| format!("{count} {reason}")).collect();
-        (!counts.is_empty()).then(|| format!("left out: {}", counts.join("; ")))
     }
 
     fn step_lines(&self) -> Vec<String> {
@@ -157,7 +152,14 @@ fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
-fn bytes(count: usize) -> String {
+/// What was left out and how often, if anything was.
+pub fn left_out_line(counts: &BTreeMap<String, usize>) -> Option<String> {
+    let counts: Vec<String> = counts.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
+    (!counts.is_empty()).then(|| format!("left out: {}", counts.join("; ")))
+}
+
+/// A number of bytes in a unit that suits it.
+pub fn bytes(count: usize) -> String {
     let mut value = count as f64;
     for unit in ["B", "kB", "MB", "GB"] {
         if value < 1000.0 || unit == "GB" {

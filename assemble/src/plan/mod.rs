@@ -1,0 +1,195 @@
+//! What a run would do, before a form factor is computed: the run itself with a monitor that is stopped. What the cache
+//! has, the run's own code finds there; what it has not is not made. In goes a [`Job`]; out comes a [`Plan`].
+
+mod text;
+mod unseen;
+
+use crate::coupling::{Coupler, Foreseen};
+use crate::hull::intruders;
+use crate::outputs::check_writable;
+use crate::placed::Placed;
+use crate::report::summary::{BLACK_ROWS, DARK_SOLVES, SHARED, UNSEEN};
+use crate::run::Job;
+use equilux_bake::batch::damage_notes;
+use equilux_bake::cached::Origin;
+use equilux_bake::gltf_import::import_scene;
+use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::{Baked, Oven};
+use equilux_bake::prepare::{Prepared, PreparedPart, prepare};
+use equilux_bake::world::World;
+use equilux_formats::{Instance, Result, Store};
+use serde::Serialize;
+use std::collections::BTreeMap;
+use unseen::unseen_pairs;
+
+/// What would be computed, reused and left out, as `--json` prints it.
+#[derive(Debug, Clone, Serialize)]
+pub struct Plan {
+    /// The scene's name.
+    pub scene: String,
+    /// Number of elements in the scene.
+    pub elements: usize,
+    /// Element size in force, for a person.
+    pub element_size: String,
+    /// How form factors are kept, for a person.
+    pub resolution: String,
+    /// The distinct parts.
+    pub parts: Vec<PlannedPart>,
+    /// The parts in their places.
+    pub instances: Vec<PlannedInstance>,
+    /// Pairs of instances whose faces cannot see each other whatever stands between; walls may hide more.
+    pub unseen: Vec<[String; 2]>,
+    /// What would be left out because it changes no radiosity, and how often at least, by reason.
+    pub left_out: BTreeMap<String, usize>,
+    /// Bytes of the classic matrix in f64: every element with every other.
+    pub classic_matrix_bytes: usize,
+    /// What was ignored, dropped or found damaged, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// One distinct part.
+#[derive(Debug, Clone, Serialize)]
+pub struct PlannedPart {
+    /// Its name.
+    pub name: String,
+    /// Its elements.
+    pub elements: usize,
+    /// In how many places it stands.
+    pub places: usize,
+    /// What becomes of its own form factors.
+    pub form_factors: Step,
+    /// Who solves its equilibrium.
+    pub local_solver: String,
+}
+
+/// A part in its place.
+#[derive(Debug, Clone, Serialize)]
+pub struct PlannedInstance {
+    /// Its name.
+    pub name: String,
+    /// Its part.
+    pub part: String,
+    /// What stands inside it, so that its own form factors are not those of the part.
+    pub intruders: Vec<String>,
+    /// What becomes of its own form factors with what stands inside; none if nothing does.
+    pub corrected: Option<Step>,
+    /// What becomes of the form factors to all others.
+    pub coupling: Step,
+}
+
+/// Whether something is computed, and why.
+#[derive(Debug, Clone, Serialize)]
+pub struct Step {
+    /// `computed` or `reused`.
+    pub how: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+/// What the job would do. Computes no form factor. Parts whose form factors are in the cache are brought up to date
+/// there: a new paint is solved now instead of by the run.
+pub fn plan(job: &Job) -> Result<Plan> {
+    let scene = import_scene(&job.scene)?;
+    let prepared = prepare(&scene, &job.preparation)?;
+    check_writable(job, &scene)?;
+    let store = Store::open(&job.cache)?;
+    let stopped = Monitor::default();
+    stopped.stop();
+    let resolution = job.preparation.resolution;
+    let oven = Oven { store: &store, file: &job.scene, resolution, monitor: &stopped };
+    let baked = prepared.parts.iter().map(|part| oven.bake(part)).collect::<Result<Vec<_>>>()?;
+
+    let placed = |i: &Instance| (&prepared.parts[i.part.index()].geometry, i.placement);
+    let world = World::new(prepared.instances.iter().map(placed));
+    let unseen = unseen_pairs(&world);
+    let name = |k: usize| prepared.instances[k].name.clone();
+    Ok(Plan {
+        scene: scene.name,
+        elements: world.elements.len(),
+        element_size: prepared.element_size.to_string(),
+        resolution: resolution.to_string(),
+        parts: planned_parts(&prepared, &baked),
+        unseen: unseen.iter().map(|pair| pair.map(name)).collect(),
+        left_out: left_out(&prepared, unseen.len()),
+        classic_matrix_bytes: world.elements.len().pow(2) * size_of::<f64>(),
+        instances: planned_instances(&prepared, baked, |placed| {
+            let coupler = Coupler { placed, store: &store, file: &job.scene, resolution, monitor: &stopped };
+            (0..placed.instances.len()).map(|k| coupler.foresee(k)).collect()
+        }),
+        notes: [scene.notes, damage_notes(&store)].concat(),
+    })
+}
+
+fn planned_parts(prepared: &Prepared, baked: &[Option<Baked>]) -> Vec<PlannedPart> {
+    let planned = |(number, (part, baked)): (usize, (&PreparedPart, &Option<Baked>))| PlannedPart {
+        name: part.name.clone(),
+        elements: part.geometry.elements.len(),
+        places: prepared.instances.iter().filter(|instance| instance.part.index() == number).count(),
+        form_factors: match baked {
+            Some(baked) => Step::of(&baked.form_factors),
+            None => Step::computed("the cache has none of this geometry with these settings"),
+        },
+        local_solver: format!("{:?}", part.solver),
+    };
+    prepared.parts.iter().zip(baked).enumerate().map(planned).collect()
+}
+
+/// What `foresee` says of the parts in their places, if the cache has them all. Without its parts nothing is known under
+/// which a coupling could be found: then every block is computed.
+fn planned_instances(
+    prepared: &Prepared,
+    baked: Vec<Option<Baked>>,
+    foresee: impl FnOnce(&Placed) -> Vec<Foreseen>,
+) -> Vec<PlannedInstance> {
+    let foreseen = match baked.into_iter().collect::<Option<Vec<Baked>>>() {
+        Some(parts) => foresee(&Placed::new(parts, prepared.instances.clone())),
+        None => anew(prepared),
+    };
+    let planned = |(instance, foreseen): (&Instance, Foreseen)| PlannedInstance {
+        name: instance.name.clone(),
+        part: prepared.parts[instance.part.index()].name.clone(),
+        corrected: foreseen.corrected.as_ref().map(Step::of),
+        coupling: Step::of(&foreseen.coupling),
+        intruders: foreseen.intruders.iter().map(|&k| prepared.instances[k].name.clone()).collect(),
+    };
+    prepared.instances.iter().zip(foreseen).map(planned).collect()
+}
+
+/// Everything computed.
+fn anew(prepared: &Prepared) -> Vec<Foreseen> {
+    let geometry = |k: usize| &prepared.parts[prepared.instances[k].part.index()].geometry;
+    let computed = || Origin::Computed("not all parts are in the cache".into());
+    let of = |k: usize| {
+        let intruders = intruders(&prepared.instances, geometry, k);
+        Foreseen { corrected: (!intruders.is_empty()).then(computed), coupling: computed(), intruders }
+    };
+    (0..prepared.instances.len()).map(of).collect()
+}
+
+/// What can be told without form factors of what the report of the run will count.
+fn left_out(prepared: &Prepared, unseen: usize) -> BTreeMap<String, usize> {
+    let parts = || prepared.instances.iter().map(|instance| &prepared.parts[instance.part.index()]);
+    let black = |part: &PreparedPart| part.optics.reflectance.iter().filter(|&&rho| rho == [0.0; 3]).count();
+    let dark = |part: &&PreparedPart| part.optics.emission.iter().all(|&emission| emission == [0.0; 3]);
+    let counts = [
+        // Each of the two has a coupling.
+        (UNSEEN, 2 * unseen),
+        (BLACK_ROWS, parts().map(black).sum()),
+        (DARK_SOLVES, parts().filter(dark).count()),
+        (SHARED, prepared.instances.len() - prepared.parts.len()),
+    ];
+    counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
+}
+
+impl Step {
+    fn of(origin: &Origin) -> Self {
+        match origin {
+            Origin::Reused => Self { how: "reused", reason: "all inputs are unchanged".into() },
+            Origin::Computed(reason) => Self::computed(reason),
+        }
+    }
+
+    fn computed(reason: &str) -> Self {
+        Self { how: "computed", reason: reason.into() }
+    }
+}
