@@ -3,13 +3,11 @@
 //! Seen from a point outside, a convex solid hides exactly the pyramid over its silhouette: the loop of edges between
 //! faces that look at the point and faces that do not.
 
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::{Polygon, Pyramid};
+use crate::outline::{Edge, Outline, Plane};
 use crate::planes::FLATNESS;
 use crate::visibility::BoxTree;
 use equilux_formats::Face;
 use glam::DVec3;
-use smallvec::SmallVec;
 use std::collections::HashMap;
 
 /// All occluders of a world.
@@ -28,20 +26,14 @@ pub struct Occluder {
     pub low: DVec3,
     /// Highest corner of its box.
     pub high: DVec3,
+    /// Diagonal of its box.
+    pub diameter: f64,
     /// Its corners.
     pub corners: Vec<DVec3>,
     /// Its faces: one, or all of a solid.
     pub faces: Vec<u32>,
-    /// The edges of a solid; none of a single face.
-    edges: Vec<Edge>,
-}
-
-/// An edge of a solid, counter-clockwise around the face on its left seen from outside.
-struct Edge {
-    ends: [DVec3; 2],
-    /// Positions in the solid's list of faces.
-    left: u32,
-    right: u32,
+    /// Its edges; sides are in the order of `faces`.
+    pub outline: Outline,
 }
 
 impl Occluders {
@@ -56,7 +48,8 @@ impl Occluders {
             } else {
                 for face in group {
                     of_face[face as usize] = all.len() as u32;
-                    all.push(Occluder::new(faces[face as usize].corners.clone(), vec![face], vec![]));
+                    let Face { corners, normal } = &faces[face as usize];
+                    all.push(Occluder::new(corners.clone(), vec![face], Outline::of_face(corners, *normal)));
                 }
             }
         }
@@ -66,93 +59,16 @@ impl Occluders {
 }
 
 impl Occluder {
-    fn new(corners: Vec<DVec3>, faces: Vec<u32>, edges: Vec<Edge>) -> Self {
+    fn new(corners: Vec<DVec3>, faces: Vec<u32>, outline: Outline) -> Self {
         let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        Self { low, high, corners, faces, edges }
+        Self { low, high, diameter: (high - low).length(), corners, faces, outline }
     }
 
     /// Whether it is a closed convex solid.
     pub fn is_solid(&self) -> bool {
-        !self.edges.is_empty()
+        !self.outline.thin
     }
-
-    /// The pyramid it hides from `point`; none if it is seen edge-on. From inside a solid everything is hidden.
-    pub fn pyramid(&self, point: DVec3, faces: &[Face]) -> Option<Pyramid> {
-        if self.is_solid() {
-            return Some(self.silhouette(point, faces));
-        }
-        let normal = faces[self.faces[0] as usize].normal;
-        face_pyramid(&self.corners, normal, point)
-    }
-
-    fn silhouette(&self, point: DVec3, faces: &[Face]) -> Pyramid {
-        let looks = self.faces_that_look_at(point, faces);
-        Pyramid::between(self.silhouette_edges(&looks).map(|(a, b)| inwards(a - point, b - point)).collect())
-    }
-
-    /// The pyramid that the piece of a solid where `height` is above zero hides from `point`, whose own height is above
-    /// zero. The piece is convex as well: its silhouette follows the solid's, and closes along the cut through the
-    /// faces that look at the point.
-    pub fn pyramid_above(&self, point: DVec3, faces: &[Face], height: impl Fn(DVec3) -> f64) -> Pyramid {
-        let looks = self.faces_that_look_at(point, faces);
-        let above = |&(a, b): &(DVec3, DVec3)| height(a) > 0.0 || height(b) > 0.0;
-        let mut planes: Polygon =
-            self.silhouette_edges(&looks).filter(above).map(|(a, b)| inwards(a - point, b - point)).collect();
-        for (&face, _) in self.faces.iter().zip(&looks).filter(|&(_, &looks)| looks) {
-            if let Some((a, b)) = cut_edge(&faces[face as usize].corners, &height) {
-                planes.push(inwards(a - point, b - point));
-            }
-        }
-        Pyramid::between(planes)
-    }
-
-    fn faces_that_look_at(&self, point: DVec3, faces: &[Face]) -> SmallVec<[bool; 16]> {
-        let looks = |&face: &u32| {
-            let face = &faces[face as usize];
-            let to_corner = face.corners[0] - point;
-            face.normal.dot(to_corner) < -IN_PLANE * to_corner.length()
-        };
-        self.faces.iter().map(looks).collect()
-    }
-
-    /// The edges between faces that look and faces that do not, counter-clockwise around those that look.
-    fn silhouette_edges<'a>(&'a self, looks: &'a [bool]) -> impl Iterator<Item = (DVec3, DVec3)> + 'a {
-        self.edges.iter().filter_map(|edge| {
-            let [a, b] = edge.ends;
-            match (looks[edge.left as usize], looks[edge.right as usize]) {
-                (true, false) => Some((a, b)),
-                (false, true) => Some((b, a)),
-                _ => None,
-            }
-        })
-    }
-}
-
-/// The plane through the origin and an edge that runs counter-clockwise around a face that looks at the origin.
-fn inwards(a: DVec3, b: DVec3) -> DVec3 {
-    -a.cross(b - a)
-}
-
-/// Where a plane cuts a convex polygon: the edge that closes the piece above, in the piece's order.
-fn cut_edge(corners: &[DVec3], height: impl Fn(DVec3) -> f64) -> Option<(DVec3, DVec3)> {
-    let (mut exit, mut entry) = (None, None);
-    for (i, &a) in corners.iter().enumerate() {
-        let b = corners[(i + 1) % corners.len()];
-        let (ha, hb) = (height(a), height(b));
-        if (ha > 0.0) != (hb > 0.0) {
-            let cut = a + (b - a) * (ha / (ha - hb));
-            if ha > 0.0 { exit = Some(cut) } else { entry = Some(cut) }
-        }
-    }
-    exit.zip(entry)
-}
-
-/// The pyramid over a polygon seen from `point`; none if it is seen edge-on.
-pub fn face_pyramid(corners: &[DVec3], normal: DVec3, point: DVec3) -> Option<Pyramid> {
-    let polygon: Polygon = corners.iter().map(|&p| p - point).collect();
-    let reach = polygon.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
-    (normal.dot(polygon[0]).abs() > IN_PLANE * reach).then(|| Pyramid::over(&polygon, normal))
 }
 
 /// A point as a key: equal to the bit.
@@ -228,5 +144,13 @@ fn convex_solid(group: &[u32], faces: &[Face]) -> Option<Occluder> {
     group
         .iter()
         .all(|&face| behind(&faces[face as usize]))
-        .then(|| Occluder::new(corners, group.to_vec(), solid_edges))
+        .then(|| {
+            let side = |&face: &u32| {
+                let face = &faces[face as usize];
+                Plane { normal: face.normal, point: face.corners[0] }
+            };
+            let sides = group.iter().map(side).collect();
+            let outline = Outline { sides, edges: solid_edges, size: 2.0 * size, thin: false };
+            Occluder::new(corners, group.to_vec(), outline)
+        })
 }

@@ -5,12 +5,29 @@
 
 use glam::DVec3;
 
+/// Planes of a region: four bridges for each pair of axes, then the horizon and the sender's plane, and two to spare.
+const PLANES: usize = 16;
+
+/// For each bridge the two axes of its plane, and whether it lies up or down them.
+const BRIDGES: [(usize, usize, f64, f64); 12] = {
+    let mut bridges = [(0, 0, 0.0, 0.0); 12];
+    let (axes, ways) = ([(0, 1), (0, 2), (1, 2)], [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)]);
+    let mut k = 0;
+    while k < 12 {
+        bridges[k] = (axes[k / 4].0, axes[k / 4].1, ways[k % 4].0, ways[k % 4].1);
+        k += 1;
+    }
+    bridges
+};
+
 /// A convex region around everything between two boxes.
 pub struct Shaft {
     low: DVec3,
     high: DVec3,
-    /// Outward normal and offset: outside is where n·p ≥ d.
-    planes: Vec<(DVec3, f64)>,
+    /// Outward normals by coordinate, and offsets: outside is where n·p ≥ d. Unused ones have no outside.
+    normals: [[f64; PLANES]; 3],
+    offsets: [f64; PLANES],
+    count: usize,
 }
 
 /// A box by its lowest and highest corner.
@@ -18,41 +35,56 @@ pub type Bounds = (DVec3, DVec3);
 
 impl Shaft {
     /// The shaft between two boxes.
+    #[inline(always)]
     pub fn between(a: Bounds, b: Bounds) -> Self {
-        let mut shaft = Self { low: a.0.min(b.0), high: a.1.max(b.1), planes: Vec::with_capacity(8) };
-        for (u, v) in [(0, 1), (0, 2), (1, 2)] {
-            for (up_u, up_v) in [(false, false), (false, true), (true, false), (true, true)] {
-                shaft.bridge(a, b, (u, up_u), (v, up_v));
-            }
+        let mut shaft = Self {
+            low: a.0.min(b.0),
+            high: a.1.max(b.1),
+            normals: [[0.0; PLANES]; 3],
+            offsets: [f64::INFINITY; PLANES],
+            count: BRIDGES.len(),
+        };
+        let (a, b) = ([a.0.to_array(), a.1.to_array()], [b.0.to_array(), b.1.to_array()]);
+        for (k, &(u, v, up_u, up_v)) in BRIDGES.iter().enumerate() {
+            shaft.bridge(k, a, b, (u, up_u), (v, up_v));
         }
         shaft
     }
 
-    /// Nothing on the far side of the plane through `point` with normal `outwards` matters.
+    /// Nothing on the far side of the plane through `point` with normal `outwards` matters. At most four such planes.
     pub fn bound(&mut self, point: DVec3, outwards: DVec3) {
-        self.planes.push((outwards, outwards.dot(point)));
+        for axis in 0..3 {
+            self.normals[axis][self.count] = outwards[axis];
+        }
+        self.offsets[self.count] = outwards.dot(point);
+        self.count += 1;
     }
 
     /// In the plane of axes u and v, the line from a corner of `a` to the same corner of `b` bounds both boxes if each
     /// box reaches further in one of the two directions.
-    fn bridge(&mut self, a: Bounds, b: Bounds, (u, up_u): (usize, bool), (v, up_v): (usize, bool)) {
-        let corner = |b: Bounds, axis: usize, up: bool| if up { b.1[axis] } else { b.0[axis] };
-        let (pu, pv) = (corner(a, u, up_u), corner(a, v, up_v));
-        let (qu, qv) = (corner(b, u, up_u), corner(b, v, up_v));
-        let further = |p: f64, q: f64, up: bool| if up { p > q } else { p < q };
-        let first = further(pu, qu, up_u) && further(qv, pv, up_v);
-        let second = further(qu, pu, up_u) && further(pv, qv, up_v);
-        if !(first || second) {
-            return;
-        }
-        let sign = |up: bool| if up { 1.0 } else { -1.0 };
-        let mut normal = DVec3::ZERO;
-        normal[u] = sign(up_u) * (qv - pv).abs();
-        normal[v] = sign(up_v) * (qu - pu).abs();
-        self.planes.push((normal, normal[u] * pu + normal[v] * pv));
+    #[inline(always)]
+    fn bridge(
+        &mut self,
+        k: usize,
+        a: [[f64; 3]; 2],
+        b: [[f64; 3]; 2],
+        (u, up_u): (usize, f64),
+        (v, up_v): (usize, f64),
+    ) {
+        let side = |up: f64| usize::from(up > 0.0);
+        let (pu, pv) = (a[side(up_u)][u], a[side(up_v)][v]);
+        let (qu, qv) = (b[side(up_u)][u], b[side(up_v)][v]);
+        // How much further the first box reaches along u, and the second along v: of one sign where there is a bridge.
+        let (along_u, along_v) = ((pu - qu) * up_u, (qv - pv) * up_v);
+        let is_bridge = ((along_u > 0.0) & (along_v > 0.0)) | ((along_u < 0.0) & (along_v < 0.0));
+        let (nu, nv) = (up_u * along_v.abs(), up_v * along_u.abs());
+        self.normals[u][k] = nu;
+        self.normals[v][k] = nv;
+        self.offsets[k] = if is_bridge { nu * pu + nv * pv } else { f64::INFINITY };
     }
 
     /// Whether a box lies outside.
+    #[inline(always)]
     pub fn misses_box(&self, low: DVec3, high: DVec3) -> bool {
         if low.cmpge(self.high).any() || high.cmple(self.low).any() {
             // A flat thing in a side of the region only touches it, unless the region itself is flat there.
@@ -66,11 +98,32 @@ impl Shaft {
             }
         }
         let (centre, half) = ((low + high) * 0.5, (high - low) * 0.5);
-        self.planes.iter().any(|&(normal, offset)| normal.dot(centre) - normal.abs().dot(half) >= offset)
+        let [nx, ny, nz] = &self.normals;
+        let mut outside = false;
+        for k in 0..PLANES {
+            let nearest = (nx[k] * centre.x - nx[k].abs() * half.x)
+                + (ny[k] * centre.y - ny[k].abs() * half.y)
+                + (nz[k] * centre.z - nz[k].abs() * half.z);
+            outside |= nearest >= self.offsets[k];
+        }
+        outside
     }
 
     /// Whether the convex hull of `corners` lies outside.
+    #[inline(always)]
     pub fn misses(&self, corners: &[DVec3]) -> bool {
-        self.planes.iter().any(|&(normal, offset)| corners.iter().all(|p| normal.dot(*p) >= offset))
+        let [nx, ny, nz] = &self.normals;
+        let mut nearest = [f64::INFINITY; PLANES];
+        for p in corners {
+            for k in 0..PLANES {
+                let along = nx[k] * p.x + ny[k] * p.y + nz[k] * p.z;
+                nearest[k] = if along < nearest[k] { along } else { nearest[k] };
+            }
+        }
+        let mut outside = false;
+        for k in 0..PLANES {
+            outside |= nearest[k] >= self.offsets[k];
+        }
+        outside
     }
 }

@@ -2,9 +2,9 @@
 //!
 //! With unit vectors a, b to an edge's ends, θ n·(a×b)/|a×b| = n·(a×b) · g(a·b), where g(c) = acos(c)/√(1−c²) is smooth
 //! on (−1, 1]: no cross product is normalised and no arc tangent taken. All loops run over lanes of plain arrays, which
-//! the compiler turns into vector instructions. [`super::contour`] is the plain version.
+//! the compiler turns into vector instructions where they are inlined into [`vectorised`]. [`super::contour`] is the
+//! plain version.
 
-use super::contour;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -12,14 +12,23 @@ use std::f64::consts::PI;
 pub const LANES: usize = 8;
 
 /// One number a lane.
-type Lane = [f64; LANES];
+pub type Lane = [f64; LANES];
+
+/// One vector a lane, by coordinate.
+pub type Vectors = [Lane; 3];
 
 /// Cosines below this belong to edges that pass close by a receiver: there g is steep, and the plain contour is taken.
-const STEEP: f64 = -0.98;
+pub const STEEP: f64 = -0.98;
+
+/// Run `kernel` with the widest instructions this machine has. Bits do not depend on which those are: fused multiplications
+/// are asked for where they are wanted, and done in software where there are none.
+pub fn vectorised<R>(kernel: impl FnOnce() -> R) -> R {
+    pulp::Arch::new().dispatch(kernel)
+}
 
 /// Points of receivers that look along the same normal, padded with the last to whole lanes.
 pub struct Points {
-    lanes: Vec<[Lane; 3]>,
+    lanes: Vec<Vectors>,
     points: Vec<DVec3>,
     normal: DVec3,
 }
@@ -42,52 +51,54 @@ impl Points {
         &self.points
     }
 
+    /// The points, [`LANES`] at a time.
+    pub fn lanes(&self) -> &[Vectors] {
+        &self.lanes
+    }
+
     /// The normal they share.
     pub fn normal(&self) -> DVec3 {
         self.normal
     }
-
-    /// Append to `values` the form factor of the unoccluded polygon `corners` (scene coordinates, counter-clockwise from
-    /// its front, above the common horizon) for every point.
-    pub fn form_factors(&self, corners: &[DVec3], values: &mut Vec<f64>) {
-        let first = values.len();
-        for lanes in &self.lanes {
-            let (sum, lowest) = contours(lanes, corners, self.normal);
-            for lane in 0..LANES.min(self.points.len() + first - values.len()) {
-                let point = self.points[values.len() - first];
-                let plain = lowest[lane] < STEEP || is_far(point, corners);
-                values.push(if plain { self.plain(point, corners) } else { sum[lane] });
-            }
-        }
-    }
-
-    fn plain(&self, point: DVec3, corners: &[DVec3]) -> f64 {
-        let polygon: super::polygon::Polygon = corners.iter().map(|&p| p - point).collect();
-        contour::form_factor(&polygon, self.normal)
-    }
 }
 
-/// Beyond this the plain version integrates by a Gauss rule.
-fn is_far(point: DVec3, corners: &[DVec3]) -> bool {
-    let reach = (corners[0] - point).length_squared();
-    let size = (corners[0] - corners[corners.len() / 2]).length_squared();
-    reach > size * (contour::FAR * contour::FAR) * 0.25
+/// Vectors from the points to a corner.
+#[inline(always)]
+pub fn towards(corner: DVec3, points: &Vectors) -> Vectors {
+    let mut d = [[0.0; LANES]; 3];
+    for lane in 0..LANES {
+        d[0][lane] = corner.x - points[0][lane];
+        d[1][lane] = corner.y - points[1][lane];
+        d[2][lane] = corner.z - points[2][lane];
+    }
+    d
 }
 
-/// The contour sum, and the lowest cosine between neighbouring corners, of every lane.
-fn contours(points: &[Lane; 3], corners: &[DVec3], normal: DVec3) -> (Lane, Lane) {
+/// |v|² of every lane.
+#[inline(always)]
+pub fn squared(v: &Vectors) -> Lane {
+    let mut sum = [0.0; LANES];
+    for lane in 0..LANES {
+        let (x, y, z) = (v[0][lane], v[1][lane], v[2][lane]);
+        sum[lane] = x.mul_add(x, y.mul_add(y, z * z));
+    }
+    sum
+}
+
+/// The contour sum over `corners`, given relative to each point, and the lowest cosine between neighbouring corners, of
+/// every lane. Corners are counter-clockwise from the sender's front, as for [`super::contour::contour`].
+#[inline(always)]
+pub fn contours(corners: &[Vectors], normal: DVec3) -> (Lane, Lane) {
     let (mut sum, mut lowest) = ([0.0; LANES], [1.0; LANES]);
-    let first = directions(points, corners[0]);
-    let mut a = first;
-    for k in 1..=corners.len() {
-        let b = if k == corners.len() { first } else { directions(points, corners[k]) };
+    let mut a = unit(&corners[corners.len() - 1]);
+    for corner in corners {
+        let b = unit(corner);
         for lane in 0..LANES {
             let (ax, ay, az) = (a[0][lane], a[1][lane], a[2][lane]);
             let (bx, by, bz) = (b[0][lane], b[1][lane], b[2][lane]);
-            let cosine = ax * bx + ay * by + az * bz;
-            let triple = normal.x * (ay * bz - az * by)
-                + normal.y * (az * bx - ax * bz)
-                + normal.z * (ax * by - ay * bx);
+            let cosine = ax.mul_add(bx, ay.mul_add(by, az * bz));
+            let (x, y, z) = (ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx);
+            let triple = normal.x.mul_add(x, normal.y.mul_add(y, normal.z * z));
             lowest[lane] = if cosine < lowest[lane] { cosine } else { lowest[lane] };
             sum[lane] += triple * angle_over_sine(cosine);
         }
@@ -96,26 +107,26 @@ fn contours(points: &[Lane; 3], corners: &[DVec3], normal: DVec3) -> (Lane, Lane
     (sum.map(|s| -s / (2.0 * PI)), lowest)
 }
 
-/// Unit vectors from the points to a corner.
-fn directions(points: &[Lane; 3], corner: DVec3) -> [Lane; 3] {
+#[inline(always)]
+fn unit(v: &Vectors) -> Vectors {
     let mut d = [[0.0; LANES]; 3];
+    let length2 = squared(v);
     for lane in 0..LANES {
-        let (x, y, z) = (corner.x - points[0][lane], corner.y - points[1][lane], corner.z - points[2][lane]);
-        let inverse = 1.0 / (x * x + y * y + z * z).sqrt();
-        d[0][lane] = x * inverse;
-        d[1][lane] = y * inverse;
-        d[2][lane] = z * inverse;
+        let inverse = 1.0 / length2[lane].sqrt();
+        d[0][lane] = v[0][lane] * inverse;
+        d[1][lane] = v[1][lane] * inverse;
+        d[2][lane] = v[2][lane] * inverse;
     }
     d
 }
 
 /// g(c) = acos(c)/√(1−c²). For c ≥ 0 a polynomial; for c < 0, g(c) = π/√(1−c²) − g(−c).
 #[inline(always)]
-fn angle_over_sine(cosine: f64) -> f64 {
-    let t = 2.0 * cosine.abs() - 1.0;
+pub fn angle_over_sine(cosine: f64) -> f64 {
+    let t = cosine.abs().mul_add(2.0, -1.0);
     let mut sum = G[G.len() - 1];
     for k in (0..G.len() - 1).rev() {
-        sum = sum * t + G[k];
+        sum = sum.mul_add(t, G[k]);
     }
     let obtuse = PI / (1.0 - cosine * cosine).sqrt() - sum;
     if cosine < 0.0 { obtuse } else { sum }

@@ -1,8 +1,8 @@
 //! Lists of what may stand between receivers and a sender. They start with the box around everything and are narrowed
-//! on the way down the senders' hierarchy; entries are boxes that have not been opened, or occluders.
+//! on the way down the two hierarchies; entries are boxes that have not been opened, or occluders.
 
-use super::receivers::Receivers;
-use crate::occluders::Occluder;
+use super::viewers::{Viewers, box_corners};
+use crate::form_factor::wide::vectorised;
 use crate::shaft::Shaft;
 use crate::visibility::Inside;
 use crate::world::{Node, World};
@@ -38,15 +38,24 @@ pub enum Verdict {
 const OPEN_ABOVE: f64 = 0.5;
 
 impl<'a> Candidates<'a> {
+    /// The list that holds everything.
+    pub fn all(world: &'a World) -> (Self, Range<usize>) {
+        let root = world.occluders.tree.root().map(|root| Entry::Box(root as u32));
+        let entries: Vec<Entry> = root.into_iter().collect();
+        let list = 0..entries.len();
+        (Self { world, entries, open: vec![] }, list)
+    }
+
     /// No lists yet.
-    pub fn new(world: &'a World) -> Self {
+    pub fn none(world: &'a World) -> Self {
         Self { world, entries: vec![], open: vec![] }
     }
 
-    /// The list that holds everything.
-    pub fn all(&mut self) -> Range<usize> {
-        self.entries.extend(self.world.occluders.tree.root().map(|root| Entry::Box(root as u32)));
-        0..self.entries.len()
+    /// Take over a list of another search.
+    pub fn adopt(&mut self, list: &[Entry]) -> Range<usize> {
+        let first = self.entries.len();
+        self.entries.extend_from_slice(list);
+        first..self.entries.len()
     }
 
     /// A list's entries.
@@ -54,31 +63,36 @@ impl<'a> Candidates<'a> {
         &self.entries[list]
     }
 
-    /// What of `list` can stand between receivers and sender.
-    pub fn narrow(&mut self, list: Range<usize>, receivers: &Receivers, sender: &Node) -> Verdict {
-        let size = receivers.diameter.max((sender.high - sender.low).length());
-        self.filter(list, receivers, sender, OPEN_ABOVE * size)
+    /// What of `list` can stand between viewers and sender.
+    pub fn narrow(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node) -> Verdict {
+        let size = viewers.diameter.max((sender.high - sender.low).length());
+        self.filter(list, viewers, sender, OPEN_ABOVE * size)
     }
 
     /// The same down to single occluders.
-    pub fn occluders(&mut self, list: Range<usize>, receivers: &Receivers, sender: &Node) -> Verdict {
-        if self.entries[list.clone()].iter().all(|entry| matches!(entry, Entry::Occluder(_))) {
-            return Verdict::Between(list);
-        }
-        self.filter(list, receivers, sender, 0.0)
+    pub fn occluders(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node) -> Verdict {
+        self.filter(list, viewers, sender, 0.0)
     }
 
-    fn filter(
-        &mut self,
-        list: Range<usize>,
-        receivers: &Receivers,
-        sender: &Node,
-        open_above: f64,
-    ) -> Verdict {
+    fn filter(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node, open_above: f64) -> Verdict {
         if list.is_empty() {
             return Verdict::Between(list);
         }
-        let between = Between::new(self.world, receivers, sender);
+        let around;
+        let corners = if sender.polygon.is_empty() {
+            around = box_corners(sender.low, sender.high);
+            &around
+        } else {
+            &sender.polygon
+        };
+        vectorised(
+            #[inline(always)]
+            || self.keep(list, &Between::new(self.world, viewers, sender, corners), open_above),
+        )
+    }
+
+    #[inline(always)]
+    fn keep(&mut self, list: Range<usize>, between: &Between, open_above: f64) -> Verdict {
         let first = self.entries.len();
         self.open.extend(self.entries[list].iter().rev());
         while let Some(entry) = self.open.pop() {
@@ -115,44 +129,62 @@ impl<'a> Candidates<'a> {
     }
 }
 
-/// The region between receivers and one sender.
+/// The region between viewers and one sender.
 struct Between<'a> {
     world: &'a World,
-    receivers: &'a Receivers,
-    sender: &'a Node,
+    viewers: &'a Viewers,
     shaft: Shaft,
+    /// Corners of the sender, or of the box around it.
+    corners: &'a [DVec3],
     /// Face and occluder of a flat sender.
     sender_face: Option<FaceId>,
     sender_occluder: Option<u32>,
+    /// From the middle of the viewers to the middle of the sender.
+    axis: [DVec3; 2],
+    /// Every cross-section of the region is at least this large.
+    narrowest: f64,
+    /// How far the sender must lie behind a face at least to be hidden by it: it may be part of the face.
+    slack: f64,
 }
 
 impl<'a> Between<'a> {
-    fn new(world: &'a World, receivers: &'a Receivers, sender: &'a Node) -> Self {
-        let mut shaft = Shaft::between(receivers.bounds, (sender.low, sender.high));
-        shaft.bound(receivers.points.points()[0], -receivers.points.normal());
+    #[inline(always)]
+    fn new(world: &'a World, viewers: &'a Viewers, sender: &Node, corners: &'a [DVec3]) -> Self {
+        let mut shaft = Shaft::between(viewers.bounds, (sender.low, sender.high));
+        if let Some(flat) = &viewers.flat {
+            shaft.bound(viewers.hull[0], -flat.normal);
+        }
         if let Some(side) = sender.side {
             shaft.bound(world.faces[side.face.index()].corners[0], -side.normal);
         }
+        let middle = |corners: &[DVec3]| corners.iter().sum::<DVec3>() / corners.len() as f64;
+        // A share t of the way along, sections hold t of the sender and 1 − t of the viewers.
+        let (near, far) = (viewers.diameter, (sender.high - sender.low).length());
         Self {
             world,
-            receivers,
-            sender,
+            viewers,
             shaft,
             sender_face: sender.side.map(|side| side.face),
             sender_occluder: sender.side.map(|side| world.occluders.of_face[side.face.index()]),
+            axis: [middle(&viewers.hull), middle(corners)],
+            narrowest: if near == 0.0 { 0.0 } else { near * far / (near + far) },
+            slack: 1e-9 * far,
+            corners,
         }
     }
 
+    #[inline(always)]
     fn is_aside(&self, index: u32) -> bool {
         let occluder = &self.world.occluders.all[index as usize];
+        let flat = self.viewers.flat.as_ref();
         if occluder.is_solid() {
             // A convex solid hides nothing from its own surface, and nothing of it.
-            if index == self.receivers.occluder || Some(index) == self.sender_occluder {
+            if flat.is_some_and(|flat| index == flat.occluder) || Some(index) == self.sender_occluder {
                 return true;
             }
         } else {
             let face = FaceId(occluder.faces[0]);
-            let ends = [Some(self.receivers.face), self.sender_face];
+            let ends = [flat.map(|flat| flat.face), self.sender_face];
             if ends.into_iter().flatten().any(|end| self.world.coplanar(end, face)) {
                 return true;
             }
@@ -160,44 +192,42 @@ impl<'a> Between<'a> {
         self.shaft.misses_box(occluder.low, occluder.high) || self.shaft.misses(&occluder.corners)
     }
 
-    /// Whether some face of the occluder alone stands between every receiver and all of the sender.
+    /// Whether some face of the occluder alone stands between every viewer and all of the sender.
     fn is_blocked_by(&self, index: u32) -> bool {
-        let occluder: &Occluder = &self.world.occluders.all[index as usize];
+        let occluder = &self.world.occluders.all[index as usize];
+        if occluder.diameter < self.narrowest {
+            return false;
+        }
         occluder.faces.iter().any(|&face| self.is_covered_by(&self.world.faces[face as usize]))
     }
 
     fn is_covered_by(&self, face: &Face) -> bool {
         let origin = face.corners[0];
-        let side = face.normal.dot(self.receivers.points.points()[0] - origin);
-        // Strictly beyond: a face must not hide a sender that it is part of.
-        let slack = 1e-9 * (self.sender.high - self.sender.low).length();
-        let strictly = |p: DVec3, slack: f64| face.normal.dot(p - origin) * side.signum() < -slack;
-        if side == 0.0 || self.receivers.hull.iter().any(|&p| face.normal.dot(p - origin) * side <= 0.0) {
+        let [from, to] = self.axis;
+        let side = face.normal.dot(from - origin);
+        // The axis is looked at first: most faces are not even in its way.
+        if side == 0.0 || face.normal.dot(to - origin) * side.signum() >= -self.slack {
             return false;
         }
-        let corners = self.sender_corners();
-        if !corners.iter().all(|&p| strictly(p, slack)) {
-            return false;
-        }
-        self.receivers.hull.iter().all(|&from| {
-            (0..face.corners.len()).all(|i| {
-                let (a, b) = (face.corners[i] - from, face.corners[(i + 1) % face.corners.len()] - from);
-                let inwards = a.cross(b) * -side.signum();
-                corners.iter().all(|&p| inwards.dot(p - from) >= 0.0)
+        let axis = to - from;
+        let edge = |i: usize| {
+            let next = if i + 1 == face.corners.len() { 0 } else { i + 1 };
+            (face.corners[i], face.corners[next])
+        };
+        let inwards = |i: usize, from: DVec3| {
+            let (a, b) = edge(i);
+            (a - from).cross(b - a) * -side.signum()
+        };
+        let edges = || 0..face.corners.len();
+        edges().all(|i| inwards(i, from).dot(axis) >= 0.0)
+            && self.viewers.hull.iter().all(|&p| face.normal.dot(p - origin) * side > 0.0)
+            // Strictly beyond: a face must not hide a sender that it is part of.
+            && self.corners.iter().all(|&p| face.normal.dot(p - origin) * side.signum() < -self.slack)
+            && self.viewers.hull.iter().all(|&from| {
+                edges().all(|i| {
+                    let inwards = inwards(i, from);
+                    self.corners.iter().all(|&p| inwards.dot(p - from) >= 0.0)
+                })
             })
-        })
-    }
-
-    fn sender_corners(&self) -> smallvec::SmallVec<[DVec3; 10]> {
-        if !self.sender.polygon.is_empty() {
-            return self.sender.polygon.clone();
-        }
-        let (l, h) = (self.sender.low, self.sender.high);
-        (0..8)
-            .map(|k| {
-                let pick = |bit: usize, axis: usize| if k >> bit & 1 == 0 { l[axis] } else { h[axis] };
-                DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
-            })
-            .collect()
     }
 }

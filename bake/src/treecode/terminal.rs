@@ -1,66 +1,81 @@
 //! Form factors from all receivers of a cluster to one sender polygon behind a short list of occluders.
 //!
 //! What is the same for all receivers is done once: the horizon cuts the sender, and the sender's plane tells which
-//! occluders stand before it. Then each receiver takes away what each occluder hides from it.
+//! occluders stand before it. Then the receivers, a few lanes at a time, see how the sender lies to the pyramid that each
+//! occluder hides. Only where a pyramid cuts the sender, for that receiver alone, polygons are clipped.
 
 use super::candidates::Entry;
+use super::cones::{Cone, Cones, Lies, Planes, REST, lies, normal_of};
+use super::pieces::{Pieces, Scissors};
 use super::receivers::Receivers;
 use crate::form_factor::contour;
+use crate::form_factor::edges::Edges;
 use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::{Hides, Polygon, Pyramid, Side, clip};
-use crate::occluders::face_pyramid;
+use crate::form_factor::polygon::{Polygon, Side, clip};
+use crate::form_factor::wide::{LANES, Lane, STEEP, Vectors, contours, squared, towards, vectorised};
+use crate::outline::Outline;
 use crate::world::{Node, World};
 use equilux_formats::FaceId;
 use glam::DVec3;
-use std::collections::HashMap;
+use smallvec::SmallVec;
 
 /// Computes entries, and remembers the pyramids that were needed for it.
 pub struct Evaluator<'a> {
     world: &'a World,
-    receivers: usize,
-    /// Where the pyramids of an occluder stand, one a receiver.
-    slots: HashMap<u32, usize>,
-    pyramids: Vec<Remembered>,
-    /// Unoccluded form factors of the receivers.
-    whole: Vec<f64>,
-    between: Vec<Blocker>,
-    scratch: Vec<Pyramid>,
-    pieces: Vec<Polygon>,
-    outside: Vec<Polygon>,
+    /// Pyramids of whole occluders.
+    whole: Cones,
+    /// Those of each occluder, once somebody asked.
+    known: Vec<Option<Cone>>,
+    /// Pyramids of what one sender's plane leaves of occluders.
+    pieces: Cones,
+    /// The pyramids before the sender, and whose they are.
+    before: Vec<Before>,
+    chunk: Chunk,
+    clipper: Clipper,
+    edges: Edges,
 }
 
-/// The pyramid an occluder hides from a receiver.
-#[expect(clippy::large_enum_variant, reason = "short-lived; a box would cost an allocation a cut")]
-enum Remembered {
-    Unknown,
-    EdgeOn,
-    Known(Pyramid),
+/// A pyramid before the sender.
+#[derive(Clone, Copy)]
+enum Before {
+    Whole(Cone),
+    Piece(Cone),
 }
 
-/// Something before the sender.
-#[expect(clippy::large_enum_variant, reason = "short-lived; a box would cost an allocation a cut")]
-enum Blocker {
-    /// An occluder wholly before the sender's plane.
-    Whole(usize, u32),
-    /// A solid that the sender's plane cuts.
-    Cut(u32),
-    /// The piece of a face that stands before the sender's plane.
-    Piece(Polygon, DVec3),
+/// What some receivers, a lane each, see of a sender.
+#[derive(Default)]
+struct Chunk {
+    /// The sender's corners relative to the receivers.
+    corners: Vec<Vectors>,
+    /// Unoccluded form factors; zero where all is hidden.
+    values: Lane,
+    /// Lanes whose contour is not to be trusted: far from the sender, or very near.
+    plain: [bool; LANES],
+    /// Distances below this are none.
+    slack: Lane,
+    /// The pyramids that cut the sender, and by which planes.
+    cuts: [Vec<Cut>; LANES],
+}
+
+/// A pyramid (by its place in the list) that cuts the sender, and by which of its planes.
+#[derive(Clone, Copy)]
+struct Cut {
+    before: u32,
+    planes: u64,
 }
 
 impl<'a> Evaluator<'a> {
-    /// For clusters of this many receivers.
-    pub fn new(world: &'a World, receivers: usize) -> Self {
+    /// For one cluster of receivers.
+    pub fn new(world: &'a World) -> Self {
         Self {
             world,
-            receivers,
-            slots: HashMap::new(),
-            pyramids: vec![],
-            whole: vec![],
-            between: vec![],
-            scratch: vec![],
-            pieces: vec![],
-            outside: vec![],
+            whole: Cones::default(),
+            known: vec![None; world.occluders.all.len()],
+            pieces: Cones::default(),
+            before: vec![],
+            chunk: Chunk::default(),
+            clipper: Clipper::default(),
+            edges: Edges::default(),
         }
     }
 
@@ -80,161 +95,213 @@ impl<'a> Evaluator<'a> {
             Side::None => return false,
             Side::Piece(piece) => piece,
         };
-        self.whole.clear();
-        receivers.points.form_factors(polygon, &mut self.whole);
-        self.turn_away(receivers, sender);
-        self.find_blockers(sender, occluders);
-        let mut any = false;
-        let plane = (sender.side.map_or(DVec3::ZERO, |side| side.normal), sender.polygon[0]);
-        for (i, &point) in receivers.points.points().iter().enumerate() {
-            let whole = self.whole[i];
-            let clear = whole == 0.0 || self.between.is_empty();
-            let left = if clear { whole } else { self.occluded(i, point, polygon, plane, normal, whole) };
-            any |= left != 0.0;
-            values.push(left);
-        }
-        any
-    }
-
-    /// Receivers behind the sender's plane see nothing of it; nor do those in it.
-    fn turn_away(&mut self, receivers: &Receivers, sender: &Node) {
-        let Some(side) = sender.side else { return };
-        for (value, &point) in self.whole.iter_mut().zip(receivers.points.points()) {
-            let to_corner = sender.polygon[0] - point;
-            let reach =
-                sender.polygon.iter().map(|&p| (p - point).length_squared()).fold(0.0, f64::max).sqrt();
-            if -side.normal.dot(to_corner) <= IN_PLANE * reach {
-                *value = 0.0;
+        self.find_before(receivers, sender, occluders);
+        let Self { whole, pieces, before, chunk, clipper, edges, .. } = self;
+        let facing = sender.side.map_or(DVec3::ZERO, |side| side.normal);
+        let first = values.len();
+        for (number, points) in receivers.points.lanes().iter().enumerate() {
+            let planes_of = |before: &Before| match *before {
+                Before::Whole(cone) => whole.planes(cone, number),
+                Before::Piece(cone) => pieces.planes(cone, number),
+            };
+            let planes: SmallVec<[&[Planes]; 16]> = before.iter().map(planes_of).collect();
+            vectorised(
+                #[inline(always)]
+                || chunk.look(points, polygon, normal, facing, &planes),
+            );
+            let count = LANES.min(receivers.count() - (values.len() - first));
+            for lane in 0..count {
+                values.push(chunk.values[lane]);
+                let seen = Seen { chunk, planes: &planes, lane, normal };
+                clipper.add(seen, values, edges);
             }
         }
+        edges.flush(values);
+        values[first..].iter().any(|&value| value != 0.0)
     }
 
     /// What of the list stands before the sender's plane, whichever receiver looks.
-    fn find_blockers(&mut self, sender: &Node, occluders: &[Entry]) {
-        self.between.clear();
+    fn find_before(&mut self, receivers: &Receivers, sender: &Node, occluders: &[Entry]) {
+        self.before.clear();
+        self.pieces.clear();
         let side = sender.side.expect("a sender with an outline is flat");
         let corner = sender.polygon[0];
+        let height = |p: DVec3| side.normal.dot(p - corner);
+        let lanes = receivers.points.lanes();
         for entry in occluders {
             let Entry::Occluder(index) = *entry else { unreachable!("lists of terminals are opened") };
             let occluder = &self.world.occluders.all[index as usize];
-            let reach = (occluder.high - occluder.low).length() + (occluder.corners[0] - corner).length();
-            let height = |p: DVec3| side.normal.dot(p - corner);
-            let (low, high) = occluder
-                .corners
-                .iter()
-                .map(|&p| height(p))
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
-            if high <= IN_PLANE * reach {
+            let slack = IN_PLANE * (occluder.outline.size + (occluder.corners[0] - corner).length());
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for &p in &occluder.corners {
+                low = low.min(height(p));
+                high = high.max(height(p));
+            }
+            if high <= slack {
                 continue;
             }
-            if low >= -IN_PLANE * reach {
-                let slot = self.slot(index);
-                self.between.push(Blocker::Whole(slot, index));
+            if low >= -slack {
+                let whole = &mut self.whole;
+                let known = &mut self.known[index as usize];
+                let cone = known.get_or_insert_with(|| whole.add(&occluder.outline, lanes));
+                self.before.push(Before::Whole(*cone));
                 continue;
             }
-            if occluder.is_solid() {
-                self.between.push(Blocker::Cut(index));
+            let faces = || occluder.faces.iter().map(|&face| &self.world.faces[face as usize]);
+            let piece = if occluder.is_solid() {
+                occluder.outline.above(faces().map(|face| face.corners.as_slice()), height)
+            } else if self.world.coplanar(FaceId(occluder.faces[0]), side.face) {
                 continue;
-            }
-            for &face in &occluder.faces {
-                if self.world.coplanar(FaceId(face), side.face) {
-                    continue;
-                }
-                let face = &self.world.faces[face as usize];
-                match clip(&face.corners, height) {
-                    Side::All => {
-                        self.between.push(Blocker::Piece(face.corners.iter().copied().collect(), face.normal))
-                    }
-                    Side::None => {}
-                    Side::Piece(piece) => self.between.push(Blocker::Piece(piece, face.normal)),
-                }
-            }
-        }
-    }
-
-    fn slot(&mut self, occluder: u32) -> usize {
-        let (receivers, pyramids) = (self.receivers, &mut self.pyramids);
-        *self.slots.entry(occluder).or_insert_with(|| {
-            let slot = pyramids.len();
-            pyramids.resize_with(slot + receivers, || Remembered::Unknown);
-            slot
-        })
-    }
-
-    /// The form factor of what is left of `polygon` for one receiver, whose unoccluded form factor is `whole`.
-    fn occluded(
-        &mut self,
-        receiver: usize,
-        point: DVec3,
-        polygon: &Polygon,
-        plane: (DVec3, DVec3),
-        normal: DVec3,
-        whole: f64,
-    ) -> f64 {
-        let polygon: Polygon = polygon.iter().map(|&p| p - point).collect();
-        self.scratch.clear();
-        for blocker in &self.between {
-            let made;
-            let pyramid = match blocker {
-                Blocker::Whole(slot, index) => {
-                    let remembered = &mut self.pyramids[slot + receiver];
-                    if matches!(remembered, Remembered::Unknown) {
-                        let occluder = &self.world.occluders.all[*index as usize];
-                        *remembered = occluder
-                            .pyramid(point, &self.world.faces)
-                            .map_or(Remembered::EdgeOn, Remembered::Known);
-                    }
-                    match remembered {
-                        Remembered::Known(pyramid) => &*pyramid,
-                        _ => continue,
-                    }
-                }
-                Blocker::Cut(index) => {
-                    let occluder = &self.world.occluders.all[*index as usize];
-                    made = occluder.pyramid_above(point, &self.world.faces, |p| plane.0.dot(p - plane.1));
-                    &made
-                }
-                Blocker::Piece(corners, normal) => {
-                    let Some(pyramid) = face_pyramid(corners, *normal, point) else { continue };
-                    made = pyramid;
-                    &made
+            } else {
+                match clip(&occluder.corners, height) {
+                    Side::All => occluder.outline.clone(),
+                    Side::None => continue,
+                    Side::Piece(piece) => Outline::of_face(&piece, occluder.outline.sides[0].normal),
                 }
             };
-            match pyramid.hides(&polygon) {
-                Hides::All => return 0.0,
-                Hides::Part => self.scratch.push(pyramid.clone()),
-                Hides::Nothing => {}
+            self.before.push(Before::Piece(self.pieces.add(&piece, lanes)));
+        }
+    }
+}
+
+impl Chunk {
+    /// See how the sender `polygon`, whose front looks along `facing`, lies to all pyramids.
+    #[inline(always)]
+    fn look(
+        &mut self,
+        points: &Vectors,
+        polygon: &[DVec3],
+        normal: DVec3,
+        facing: DVec3,
+        pyramids: &[&[Planes]],
+    ) {
+        self.corners.clear();
+        let mut reach2 = [0.0; LANES];
+        for &corner in polygon {
+            let to = towards(corner, points);
+            let length2 = squared(&to);
+            for lane in 0..LANES {
+                reach2[lane] = if length2[lane] > reach2[lane] { length2[lane] } else { reach2[lane] };
+            }
+            self.corners.push(to);
+        }
+        for lane in 0..LANES {
+            self.slack[lane] = IN_PLANE * reach2[lane].sqrt();
+        }
+        // Receivers behind the sender's plane, or in it, see nothing of it.
+        let mut dark = [false; LANES];
+        let to = &self.corners[0];
+        for lane in 0..LANES {
+            let before = -(facing.x * to[0][lane] + facing.y * to[1][lane] + facing.z * to[2][lane]);
+            dark[lane] = before <= self.slack[lane];
+        }
+        self.cuts.iter_mut().for_each(Vec::clear);
+        for (number, planes) in pyramids.iter().enumerate() {
+            let Lies { aside, cuts } = lies(planes, &self.corners, &self.slack);
+            for lane in 0..LANES {
+                dark[lane] |= !aside[lane] & (cuts[lane] == 0);
+            }
+            for lane in 0..LANES {
+                if !aside[lane] && cuts[lane] != 0 {
+                    self.cuts[lane].push(Cut { before: number as u32, planes: cuts[lane] });
+                }
+            }
+            if dark == [true; LANES] {
+                self.values = [0.0; LANES];
+                return;
             }
         }
-        match self.scratch.len() {
-            0 => whole,
-            1 => {
-                let hidden = self.scratch[0].intersect(&polygon);
-                whole - hidden.map_or(0.0, |hidden| contour::form_factor(&hidden, normal))
-            }
-            _ => self.left_over(polygon, normal),
+        let (sums, lowest) = contours(&self.corners, normal);
+        let size2 = (polygon[0] - polygon[polygon.len() / 2]).length_squared();
+        for lane in 0..LANES {
+            self.values[lane] = if dark[lane] { 0.0 } else { sums[lane] };
+            let far = reach2[lane] > size2 * (contour::FAR * contour::FAR * 0.25);
+            self.plain[lane] = far | (lowest[lane] < STEEP);
         }
     }
 
-    fn left_over(&mut self, polygon: Polygon, normal: DVec3) -> f64 {
-        // Those that hide most come first: often nothing is left for the others.
-        self.scratch.sort_by_cached_key(|pyramid| std::cmp::Reverse(pyramid.corners_inside(&polygon)));
-        self.pieces.clear();
-        self.pieces.push(polygon);
-        for pyramid in &self.scratch {
-            self.outside.clear();
-            for piece in self.pieces.drain(..) {
-                match pyramid.hides(&piece) {
-                    Hides::All => {}
-                    Hides::Nothing => self.outside.push(piece),
-                    Hides::Part => pyramid.subtract_from(piece, &mut self.outside),
+    fn corners_of(&self, lane: usize) -> Polygon {
+        self.corners.iter().map(|v| DVec3::new(v[0][lane], v[1][lane], v[2][lane])).collect()
+    }
+}
+
+/// What one receiver sees.
+struct Seen<'a> {
+    chunk: &'a mut Chunk,
+    planes: &'a [&'a [Planes]],
+    lane: usize,
+    normal: DVec3,
+}
+
+/// Takes what is hidden from one receiver out of its value.
+#[derive(Default)]
+struct Clipper {
+    scissors: Scissors,
+    pieces: Pieces,
+    outside: Pieces,
+}
+
+impl Clipper {
+    /// Correct the last of `values`, which is the unoccluded form factor.
+    fn add(&mut self, seen: Seen, values: &mut [f64], edges: &mut Edges) {
+        let Seen { chunk, planes, lane, normal } = seen;
+        let place = values.len() - 1;
+        if values[place] == 0.0 || (chunk.cuts[lane].is_empty() && !chunk.plain[lane]) {
+            return;
+        }
+        let plain = chunk.plain[lane];
+        let mut sum = |polygon: &[DVec3], sign: f64, values: &mut [f64]| {
+            if plain {
+                values[place] += sign * contour::form_factor(polygon, normal);
+            } else {
+                edges.add(polygon, normal, sign, place, values);
+            }
+        };
+        let polygon = chunk.corners_of(lane);
+        if plain {
+            values[place] = contour::form_factor(&polygon, normal);
+        }
+        let cutting = |cut: &Cut| {
+            let planes = planes[cut.before as usize];
+            bits(cut.planes, planes.len()).map(move |number| normal_of(&planes[number], lane))
+        };
+        match chunk.cuts[lane].as_mut_slice() {
+            [] => {}
+            [cut] => {
+                let hidden = self.scissors.intersect(&polygon, cutting(cut));
+                if !hidden.is_empty() {
+                    sum(hidden, -1.0, values);
                 }
             }
-            std::mem::swap(&mut self.pieces, &mut self.outside);
-            if self.pieces.is_empty() {
-                return 0.0;
+            cuts => {
+                // The fewer planes cut the sender, the more of it is hidden and the fewer pieces are left.
+                cuts.sort_by_key(|cut| cut.planes.count_ones());
+                self.pieces.clear();
+                self.pieces.push(&polygon);
+                for cut in &*cuts {
+                    self.outside.clear();
+                    for piece in self.pieces.iter() {
+                        self.scissors.subtract(piece, cutting(cut), chunk.slack[lane], &mut self.outside);
+                    }
+                    std::mem::swap(&mut self.pieces, &mut self.outside);
+                }
+                values[place] = 0.0;
+                for piece in self.pieces.iter() {
+                    sum(piece, 1.0, values);
+                }
             }
         }
-        self.pieces.iter().map(|piece| contour::form_factor(piece, normal)).sum()
     }
+}
+
+/// The numbers of the bits that are set, of `count` planes; the last bit stands for all from there on.
+fn bits(mut set: u64, count: usize) -> impl Iterator<Item = usize> + Clone {
+    let rest = if set >> REST == 1 { REST..count } else { 0..0 };
+    set &= !(1 << REST);
+    let low = std::iter::from_fn(move || {
+        let number = set.trailing_zeros() as usize;
+        set &= set.wrapping_sub(1);
+        (number < 64).then_some(number)
+    });
+    low.chain(rest)
 }

@@ -1,0 +1,129 @@
+//! An index over directions: boxes around unit vectors, in a tree that needs no building.
+//!
+//! Things come in an order in which neighbours are near each other, so the box around each run of a few of them is
+//! small, and so are the boxes around runs of runs. Boxes are kept in f32, rounded outwards; what is found is decided
+//! exactly by whoever asked.
+
+use glam::{DVec3, Vec4};
+
+/// A box around directions from a point, as unit vectors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    low: [f32; 3],
+    high: [f32; 3],
+}
+
+/// Boxes reach this much further than what they hold: more than f32 rounds, and than what counts as a near-tie.
+const MARGIN: f64 = 2e-7;
+
+impl Span {
+    /// Around nothing.
+    pub const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+
+    /// Around every direction in the convex cone that these unit vectors span.
+    ///
+    /// A point p in the convex hull of unit vectors with chords of at most c has |p|² ≥ 1 − c²/2, so p/|p| lies within
+    /// the hull's box stretched by (1 − c²/2)^−½ ≤ 1 + c²/2 (for c ≤ 1).
+    pub fn over(directions: impl Iterator<Item = DVec3>) -> Self {
+        let (low, high) =
+            directions.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
+        let chord2 = (high - low).length_squared();
+        if chord2 > 1.0 {
+            return Self { low: [-2.0; 3], high: [2.0; 3] };
+        }
+        let stretch = 1.0 + chord2 / 2.0;
+        let (low, high) = (low.min(low * stretch) - MARGIN, high.max(high * stretch) + MARGIN);
+        Self { low: low.as_vec3().to_array(), high: high.as_vec3().to_array() }
+    }
+
+    /// Around this one direction.
+    pub fn at(direction: DVec3) -> Self {
+        let [low, high] = [direction - MARGIN, direction + MARGIN].map(|p| p.as_vec3().to_array());
+        Self { low, high }
+    }
+
+    /// Whether the boxes have a point in common.
+    pub fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+    }
+}
+
+/// How many boxes the next larger box holds: as many as are compared at once.
+const RUN: usize = 4;
+
+/// Neighbouring boxes, coordinate by coordinate, one a lane.
+#[derive(Debug, Clone, Copy)]
+struct Run {
+    low: [Vec4; 3],
+    high: [Vec4; 3],
+}
+
+impl Run {
+    /// A run of at most [`RUN`] spans; the rest meets nothing.
+    fn new(spans: &[Span]) -> Self {
+        let at = |lane: usize| spans.get(lane).unwrap_or(&Span::EMPTY);
+        let lanes = |value: fn(&Span) -> f32| Vec4::from_array(std::array::from_fn(|lane| value(at(lane))));
+        Self {
+            low: [lanes(|s| s.low[0]), lanes(|s| s.low[1]), lanes(|s| s.low[2])],
+            high: [lanes(|s| s.high[0]), lanes(|s| s.high[1]), lanes(|s| s.high[2])],
+        }
+    }
+
+    fn whole(&self) -> Span {
+        Span { low: self.low.map(Vec4::min_element), high: self.high.map(Vec4::max_element) }
+    }
+
+    /// The lanes that meet `sought`, a bit each.
+    fn meeting(&self, sought: &Span) -> u32 {
+        let along = |axis: usize| {
+            self.low[axis].cmple(Vec4::splat(sought.high[axis]))
+                & self.high[axis].cmpge(Vec4::splat(sought.low[axis]))
+        };
+        (along(0) & along(1) & along(2)).bitmask()
+    }
+}
+
+/// Spans of many things, to find those that meet another.
+#[derive(Debug, Default)]
+pub struct Spans {
+    /// Runs of the things' own spans, runs of the spans around those, and so on up to a single run.
+    levels: Vec<Vec<Run>>,
+}
+
+impl Spans {
+    /// The index over things with these spans; neighbours in the list should be near each other.
+    pub fn new(things: &[Span]) -> Self {
+        let mut levels = Vec::new();
+        let mut spans;
+        let mut below = things;
+        while !below.is_empty() {
+            let runs: Vec<Run> = below.chunks(RUN).map(Run::new).collect();
+            spans = if runs.len() == 1 { vec![] } else { runs.iter().map(Run::whole).collect::<Vec<Span>>() };
+            levels.push(runs);
+            below = &spans;
+        }
+        Self { levels }
+    }
+
+    /// Around everything.
+    pub fn whole(&self) -> Span {
+        self.levels.last().map_or(Span::EMPTY, |top| top[0].whole())
+    }
+
+    /// Hand things whose spans meet `sought` to `found`, in order, until it returns true; whether it did.
+    pub fn any(&self, sought: &Span, mut found: impl FnMut(usize) -> bool) -> bool {
+        !self.levels.is_empty() && self.any_of(self.levels.len() - 1, 0, sought, &mut found)
+    }
+
+    fn any_of(&self, level: usize, run: usize, sought: &Span, found: &mut impl FnMut(usize) -> bool) -> bool {
+        let mut meeting = self.levels[level][run].meeting(sought);
+        while meeting != 0 {
+            let index = run * RUN + meeting.trailing_zeros() as usize;
+            meeting &= meeting - 1;
+            if if level == 0 { found(index) } else { self.any_of(level - 1, index, sought, found) } {
+                return true;
+            }
+        }
+        false
+    }
+}

@@ -1,0 +1,69 @@
+//! Whether a mesh goes through itself, or touches itself other than along the edges that its faces share.
+
+use super::mesh::{Mesh, steps};
+use crate::form_factor::plain::IN_PLANE;
+use glam::DVec3;
+
+/// Whether an edge of any face goes through the inside of another, or touches it. Where faces cross, one of them has
+/// an edge that goes through the other.
+pub(super) fn touches_itself(mesh: &Mesh) -> bool {
+    let boxes: Vec<(DVec3, DVec3)> = (0..mesh.faces.len()).map(|face| bounds(mesh, face)).collect();
+    // Neighbours in the list are near each other, so that a box around a run of them is apart from most faces.
+    let runs: Vec<(DVec3, DVec3)> =
+        boxes.chunks(RUN).filter_map(|run| run.iter().copied().reduce(around)).collect();
+    (0..boxes.len()).any(|a| {
+        let near = (a / RUN..runs.len()).filter(|&run| meet(&boxes[a], &runs[run]));
+        near.flat_map(|run| run * RUN..boxes.len().min((run + 1) * RUN))
+            .filter(|&b| b > a && meet(&boxes[a], &boxes[b]))
+            .any(|b| touches(mesh, a, b) || touches(mesh, b, a))
+    })
+}
+
+/// Faces in a run.
+const RUN: usize = 32;
+
+/// How far from the edges of a face, relative to the mesh, its inside begins: faces that share a corner touch there.
+const INSIDE: f64 = 1e-9;
+
+fn bounds(mesh: &Mesh, face: usize) -> (DVec3, DVec3) {
+    let corners = mesh.around(face).iter().map(|&corner| mesh.corners[corner as usize]);
+    corners.map(|p| (p, p)).reduce(around).expect("a face has corners")
+}
+
+fn around(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> (DVec3, DVec3) {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
+fn meet(a: &(DVec3, DVec3), b: &(DVec3, DVec3)) -> bool {
+    (a.0.cmple(b.1) & b.0.cmple(a.1)).all()
+}
+
+/// Whether an edge of one face meets the inside of the other.
+fn touches(mesh: &Mesh, face: usize, other: usize) -> bool {
+    let at = |corner: u32| mesh.corners[corner as usize];
+    let (normal, around) = (mesh.normal(other), mesh.around(other));
+    let size = (mesh.high - mesh.low).length();
+    let height = |p: DVec3| normal.dot(p - at(around[0]));
+    steps(mesh.around(face)).any(|[a, b]| {
+        let (a, b) = (at(a), at(b));
+        let (ha, hb) = (height(a), height(b));
+        let slack = IN_PLANE * size;
+        if ha.min(hb) > slack || ha.max(hb) < -slack {
+            return false;
+        }
+        // The piece of the edge over the face's inside.
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for [c, d] in steps(around) {
+            let side = normal.cross(at(d) - at(c)).normalize();
+            let (da, db) = (side.dot(a - at(c)) - INSIDE * size, side.dot(b - at(c)) - INSIDE * size);
+            match (da > 0.0, db > 0.0) {
+                (false, false) => return false,
+                (false, true) => from = from.max(da / (da - db)),
+                (true, false) => to = to.min(da / (da - db)),
+                (true, true) => {}
+            }
+        }
+        let (low, high) = (ha + (hb - ha) * from, ha + (hb - ha) * to);
+        from <= to && low.min(high) <= slack && low.max(high) >= -slack
+    })
+}

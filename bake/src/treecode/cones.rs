@@ -1,0 +1,154 @@
+//! What an occluder hides from each receiver of a cluster, lane by lane: the planes through the receiver's point and the
+//! edges of the silhouette. And how a sender lies to them.
+
+use crate::form_factor::plain::IN_PLANE;
+use crate::form_factor::wide::{LANES, Lane, Vectors, squared, towards, vectorised};
+use crate::outline::{NO_SIDE, Outline};
+use glam::DVec3;
+use std::ops::Range;
+
+/// The planes of one edge, a lane each: unit normal inwards, and what is added to a distance from it. An edge that is no
+/// silhouette for a lane has no normal and adds ∞ there: it restricts nothing.
+pub type Planes = [Lane; 4];
+
+/// The pyramids of many occluders.
+#[derive(Default)]
+pub struct Cones {
+    planes: Vec<Planes>,
+    /// Where the planes of each occluder's each chunk of receivers end.
+    ends: Vec<usize>,
+}
+
+/// The pyramids of one occluder.
+#[derive(Debug, Clone, Copy)]
+pub struct Cone {
+    first: u32,
+}
+
+/// How a sender lies to an occluder's pyramids.
+pub struct Lies {
+    /// Lanes that have nothing hidden.
+    pub aside: [bool; LANES],
+    /// The planes that cut the sender, a bit each; the last bit stands for all planes from there on. Without any, and
+    /// not aside, all is hidden.
+    pub cuts: [u64; LANES],
+}
+
+/// The bit that stands for all planes from this one on.
+pub const REST: usize = 63;
+
+impl Cones {
+    /// Forget all.
+    pub fn clear(&mut self) {
+        self.planes.clear();
+        self.ends.clear();
+    }
+
+    /// The pyramids that an occluder hides from the points of all lanes.
+    pub fn add(&mut self, outline: &Outline, lanes: &[Vectors]) -> Cone {
+        let first = self.ends.len();
+        vectorised(
+            #[inline(always)]
+            || {
+                for points in lanes {
+                    add_planes(outline, points, &mut self.planes);
+                    self.ends.push(self.planes.len());
+                }
+            },
+        );
+        Cone { first: first as u32 }
+    }
+
+    /// The planes of one chunk of receivers.
+    pub fn planes(&self, cone: Cone, chunk: usize) -> &[Planes] {
+        &self.planes[self.range(cone.first as usize + chunk)]
+    }
+
+    fn range(&self, chunk: usize) -> Range<usize> {
+        let start = if chunk == 0 { 0 } else { self.ends[chunk - 1] };
+        start..self.ends[chunk]
+    }
+}
+
+/// The normal of one lane's plane.
+pub fn normal_of(planes: &Planes, lane: usize) -> DVec3 {
+    DVec3::new(planes[0][lane], planes[1][lane], planes[2][lane])
+}
+
+#[inline(always)]
+fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
+    let mut looks: smallvec::SmallVec<[Lane; 16]> = smallvec::SmallVec::new();
+    for side in &outline.sides {
+        let to = towards(side.point, points);
+        let length2 = squared(&to);
+        let mut look = [0.0; LANES];
+        for lane in 0..LANES {
+            let along = side.normal.x * to[0][lane] + side.normal.y * to[1][lane] + side.normal.z * to[2][lane];
+            let reach = length2[lane].sqrt() + outline.size;
+            look[lane] = if along < -IN_PLANE * reach { 1.0 } else { 0.0 };
+        }
+        looks.push(look);
+    }
+    let never = [0.0; LANES];
+    for edge in &outline.edges {
+        let left = &looks[edge.left as usize];
+        let right = if edge.right == NO_SIDE { &never } else { &looks[edge.right as usize] };
+        if left == right {
+            continue;
+        }
+        let (a, ab) = (towards(edge.ends[0], points), edge.ends[1] - edge.ends[0]);
+        let mut plane = [[0.0; LANES]; 4];
+        for lane in 0..LANES {
+            let sign = right[lane] - left[lane];
+            let x = (a[1][lane] * ab.z - a[2][lane] * ab.y) * sign;
+            let y = (a[2][lane] * ab.x - a[0][lane] * ab.z) * sign;
+            let z = (a[0][lane] * ab.y - a[1][lane] * ab.x) * sign;
+            // An edge that is seen end-on, or is no silhouette, has no length here.
+            let length = (x * x + y * y + z * z).sqrt();
+            let none = length == 0.0;
+            let inverse = if none { 0.0 } else { 1.0 / length };
+            plane[0][lane] = x * inverse;
+            plane[1][lane] = y * inverse;
+            plane[2][lane] = z * inverse;
+            plane[3][lane] = if none { f64::INFINITY } else { 0.0 };
+        }
+        planes.push(plane);
+    }
+    if outline.thin {
+        // Seen edge-on neither side looks, and nothing is hidden.
+        let mut plane = [[0.0; LANES]; 4];
+        for lane in 0..LANES {
+            let edge_on = looks[0][lane] == looks[1][lane];
+            plane[3][lane] = if edge_on { f64::NEG_INFINITY } else { f64::INFINITY };
+        }
+        if plane[3].contains(&f64::NEG_INFINITY) {
+            planes.push(plane);
+        }
+    }
+}
+
+/// How the sender with these corners (relative to each point) lies to the planes of one occluder. Corners within `slack`
+/// of a plane count as in it, so that a sender that shares an edge with the silhouette is hidden, or not, exactly.
+#[inline(always)]
+pub fn lies(planes: &[Planes], corners: &[Vectors], slack: &Lane) -> Lies {
+    let mut lies = Lies { aside: [false; LANES], cuts: [0; LANES] };
+    for (number, [x, y, z, offset]) in planes.iter().enumerate() {
+        let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+        for corner in corners {
+            for lane in 0..LANES {
+                let distance = x[lane].mul_add(
+                    corner[0][lane],
+                    y[lane].mul_add(corner[1][lane], z[lane].mul_add(corner[2][lane], offset[lane])),
+                );
+                low[lane] = if distance < low[lane] { distance } else { low[lane] };
+                high[lane] = if distance > high[lane] { distance } else { high[lane] };
+            }
+        }
+        let bit = 1u64 << number.min(REST);
+        for lane in 0..LANES {
+            lies.aside[lane] |= high[lane] <= slack[lane];
+            lies.cuts[lane] |= if low[lane] < -slack[lane] { bit } else { 0 };
+        }
+    }
+    lies
+}
