@@ -1,5 +1,6 @@
 //! What the tests and benchmarks share: shapes, rooms and glTF files made by hand, and our programs.
 
+pub mod curved;
 pub mod levels;
 pub mod measure;
 pub mod model;

@@ -30,7 +30,7 @@ impl Arc {
 
     /// Box around its directions.
     pub fn span(&self) -> Span {
-        Span::over(self.ends.into_iter())
+        Span::over(self.ends.iter().map(|end| end.as_vec3a()))
     }
 
     /// The direction of its middle.

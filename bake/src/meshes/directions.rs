@@ -4,47 +4,46 @@
 //! small, and so are the boxes around runs of runs. Boxes are kept in f32, rounded outwards; what is found is decided
 //! exactly by whoever asked.
 
-use glam::{DVec3, Vec4};
+use glam::{DVec3, Vec3A, Vec4};
 
 /// A box around directions from a point, as unit vectors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
-    low: [f32; 3],
-    high: [f32; 3],
+    low: Vec3A,
+    high: Vec3A,
 }
 
 /// Boxes reach this much further than what they hold: more than f32 rounds, and than what counts as a near-tie.
-const MARGIN: f64 = 2e-7;
+const MARGIN: f32 = 1e-6;
 
 impl Span {
     /// Around nothing.
-    pub const EMPTY: Self = Self { low: [f32::INFINITY; 3], high: [f32::NEG_INFINITY; 3] };
+    pub const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
 
     /// Around every direction in the convex cone that these unit vectors span.
     ///
     /// A point p in the convex hull of unit vectors with chords of at most c has |p|² ≥ 1 − c²/2, so p/|p| lies within
     /// the hull's box stretched by (1 − c²/2)^−½ ≤ 1 + c²/2 (for c ≤ 1).
-    pub fn over(directions: impl Iterator<Item = DVec3>) -> Self {
+    pub fn over(directions: impl Iterator<Item = Vec3A>) -> Self {
         let (low, high) =
-            directions.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
+            directions.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(l, h), d| (l.min(d), h.max(d)));
         let chord2 = (high - low).length_squared();
-        if chord2 > 1.0 {
-            return Self { low: [-2.0; 3], high: [2.0; 3] };
+        if chord2 > 0.99 {
+            return Self { low: Vec3A::splat(-2.0), high: Vec3A::splat(2.0) };
         }
         let stretch = 1.0 + chord2 / 2.0;
-        let (low, high) = (low.min(low * stretch) - MARGIN, high.max(high * stretch) + MARGIN);
-        Self { low: low.as_vec3().to_array(), high: high.as_vec3().to_array() }
+        Self { low: low.min(low * stretch) - MARGIN, high: high.max(high * stretch) + MARGIN }
     }
 
     /// Around this one direction.
     pub fn at(direction: DVec3) -> Self {
-        let [low, high] = [direction - MARGIN, direction + MARGIN].map(|p| p.as_vec3().to_array());
-        Self { low, high }
+        let direction = direction.as_vec3a();
+        Self { low: direction - MARGIN, high: direction + MARGIN }
     }
 
     /// Whether the boxes have a point in common.
     pub fn meets(&self, other: &Self) -> bool {
-        (0..3).all(|axis| self.low[axis] <= other.high[axis] && other.low[axis] <= self.high[axis])
+        (self.low.cmple(other.high) & other.low.cmple(self.high)).all()
     }
 }
 
@@ -70,7 +69,7 @@ impl Run {
     }
 
     fn whole(&self) -> Span {
-        Span { low: self.low.map(Vec4::min_element), high: self.high.map(Vec4::max_element) }
+        Span { low: self.low.map(Vec4::min_element).into(), high: self.high.map(Vec4::max_element).into() }
     }
 
     /// The lanes that meet `sought`, a bit each.

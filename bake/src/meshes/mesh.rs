@@ -47,7 +47,8 @@ pub(super) struct Edge {
 }
 
 impl Mesh {
-    /// The mesh of `group`, some of `faces`.
+    /// The mesh of `group`, some of `faces`. They should hang together: loose triangles are taken, too, but then no edge
+    /// is left out of the silhouette.
     pub fn from_faces(group: &[u32], faces: &[Face]) -> Self {
         let tree = BoxTree::new(&group.iter().map(|&face| bounds(&faces[face as usize])).collect::<Vec<_>>());
         let mut mesh = Self::without_edges(group, in_order(&tree).map(|i| group[i]).collect(), faces);

@@ -13,7 +13,7 @@ use glam::DVec3;
 /// A mesh and a sender, both as one receiver sees them.
 pub struct Obstruction<'a, C: Fn(u32) -> bool> {
     seen: &'a SeenMesh<'a>,
-    sender: &'a SeenPolygon,
+    pub(super) sender: &'a SeenPolygon,
     /// Which faces, as numbered outside, lie in the sender's plane.
     coplanar: C,
     place: Place,

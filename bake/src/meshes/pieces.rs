@@ -8,72 +8,74 @@ use super::arc::Arc;
 use super::obstruction::Obstruction;
 use crate::form_factor::polygon::{Hides, Polygon, Side, clip};
 use glam::DVec3;
-use std::ops::Range;
-
-/// Memory for cutting, kept from one sender to the next.
-#[derive(Default)]
-pub struct Splitter {
-    arcs: Vec<Arc>,
-}
 
 /// A shorter arc, in radians, does not tell on its own on which side of it is what; a face is asked.
 const TELLING: f64 = 1e-7;
 
-impl Splitter {
-    /// Append to `outside` the convex pieces of the sender that the mesh does not hide.
-    pub fn subtract<C: Fn(u32) -> bool>(
-        &mut self,
-        obstruction: &Obstruction<C>,
-        polygon: Polygon,
-        outside: &mut Vec<Polygon>,
-    ) {
-        match obstruction.outline(&mut self.arcs) {
+impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
+    /// Append to `outside` the convex pieces of the sender that the mesh does not hide, and say which case it was.
+    pub fn subtract(&self, outside: &mut Vec<Polygon>) -> Hides {
+        let mut arcs = Vec::new();
+        let hides = self.outline(&mut arcs);
+        match hides {
             Hides::All => {}
-            Hides::Nothing => outside.push(polygon),
-            Hides::Part => {
-                let mut cutting = Cutting { arcs: &mut self.arcs, obstruction, outside };
-                let all = 0..cutting.arcs.len();
-                cutting.cut(polygon, all);
-            }
+            Hides::Nothing => outside.push(self.sender.corners.clone()),
+            Hides::Part => self.cut(self.sender.corners.clone(), arcs, outside),
         }
+        hides
     }
-}
 
-struct Cutting<'a, 'b, C: Fn(u32) -> bool> {
-    /// The arcs in the piece that is being cut, after those of the pieces that it is part of.
-    arcs: &'a mut Vec<Arc>,
-    obstruction: &'a Obstruction<'b, C>,
-    outside: &'a mut Vec<Polygon>,
-}
-
-impl<C: Fn(u32) -> bool> Cutting<'_, '_, C> {
     /// Cut `polygon` along the longest of its arcs, and both halves along the others.
-    fn cut(&mut self, polygon: Polygon, arcs: Range<usize>) {
-        let length = |i: &usize| self.arcs[*i].length();
-        let longest = arcs.clone().max_by(|a, b| length(a).total_cmp(&length(b))).expect("there are arcs");
-        let splitter = self.arcs[longest];
-        for (plane, hidden) in [(splitter.hidden, true), (-splitter.hidden, false)] {
-            let piece = match clip(&polygon, |p| plane.dot(p)) {
-                Side::All => polygon.clone(),
-                Side::None => continue,
-                Side::Piece(piece) => piece,
+    fn cut(&self, mut polygon: Polygon, mut arcs: Vec<Arc>, outside: &mut Vec<Polygon>) {
+        while let Some(splitter) = take_longest(&mut arcs) {
+            let [hidden, open] =
+                [splitter.hidden, -splitter.hidden].map(|plane| half(&polygon, &arcs, plane));
+            let mut rest = None;
+            // The half with fewer arcs first, so that what waits is never deep.
+            let halves = if hidden.as_ref().map_or(0, arcs_in) < open.as_ref().map_or(0, arcs_in) {
+                [(hidden, true), (open, false)]
+            } else {
+                [(open, false), (hidden, true)]
             };
-            let first = self.arcs.len();
-            for i in arcs.clone().filter(|&i| i != longest) {
-                let inside = self.arcs[i].clip(plane);
-                self.arcs.extend(inside);
+            for (half, side) in halves {
+                let Some((piece, inside)) = half else { continue };
+                if inside.is_empty() {
+                    if !self.is_hidden(&piece, &splitter, side) {
+                        outside.push(piece);
+                    }
+                } else if let Some((piece, inside)) = rest.replace((piece, inside)) {
+                    self.cut(piece, inside, outside);
+                }
             }
-            let rest = first..self.arcs.len();
-            if !rest.is_empty() {
-                self.cut(piece, rest);
-            } else if !self.is_hidden(&piece, &splitter, hidden) {
-                self.outside.push(piece);
-            }
-            self.arcs.truncate(first);
+            let Some(larger) = rest else { return };
+            (polygon, arcs) = larger;
         }
     }
 
     fn is_hidden(&self, piece: &[DVec3], splitter: &Arc, side: bool) -> bool {
-        if splitter.length() > TELLING { side } else { self.obstruction.hides_piece(piece) }
+        if splitter.length() > TELLING { side } else { self.hides_piece(piece) }
     }
+}
+
+/// A piece of the sender and the arcs in it.
+type Half = (Polygon, Vec<Arc>);
+
+fn arcs_in(half: &Half) -> usize {
+    half.1.len()
+}
+
+fn take_longest(arcs: &mut Vec<Arc>) -> Option<Arc> {
+    let length = |i: &usize| arcs[*i].length();
+    let longest = (0..arcs.len()).max_by(|a, b| length(a).total_cmp(&length(b)))?;
+    Some(arcs.swap_remove(longest))
+}
+
+/// What is on the positive side of a plane.
+fn half(polygon: &Polygon, arcs: &[Arc], plane: DVec3) -> Option<Half> {
+    let piece = match clip(polygon, |p| plane.dot(p)) {
+        Side::All => polygon.clone(),
+        Side::None => return None,
+        Side::Piece(piece) => piece,
+    };
+    Some((piece, arcs.iter().filter_map(|arc| arc.clip(plane)).collect()))
 }

@@ -6,7 +6,7 @@ use super::crossings::cut_at_crossings;
 use super::directions::{Span, Spans};
 use super::mesh::{Edge, Mesh, steps};
 use crate::form_factor::plain::IN_PLANE;
-use glam::DVec3;
+use glam::{DVec3, Vec3A};
 
 /// What all senders of one receiver share.
 pub struct SeenMesh<'a> {
@@ -149,13 +149,15 @@ impl SeenMesh<'_> {
 
     fn find_hiding(&mut self, sides: &[SeenSide], normal: DVec3) {
         let above: Vec<bool> = self.toward.iter().map(|&direction| normal.dot(direction) > 0.0).collect();
-        let mut spans = Vec::with_capacity(sides.len() / 2);
+        let toward: Vec<Vec3A> = self.toward.iter().map(|direction| direction.as_vec3a()).collect();
+        let mut spans = Vec::with_capacity(sides.len());
+        self.hiding.reserve(sides.len());
         for (face, side) in sides.iter().enumerate() {
             let Some(front) = *side else { continue };
             let around = self.mesh.around(face);
             if around.iter().any(|&corner| above[corner as usize]) {
                 self.hiding.push(Hiding { face: face as u32, front });
-                spans.push(Span::over(around.iter().map(|&corner| self.toward[corner as usize])));
+                spans.push(Span::over(around.iter().map(|&corner| toward[corner as usize])));
             }
         }
         self.spans = Spans::new(&spans);

@@ -23,9 +23,9 @@ impl SeenPolygon {
     /// The convex polygon on `corners`, a piece of `face`. Its front, where the unit vector `normal` points, must be
     /// turned to the receiver.
     pub fn new(corners: Polygon, normal: DVec3, face: u32) -> Self {
-        let far: Polygon = corners.iter().map(|p| p.normalize()).collect();
+        let span = Span::over(corners.iter().map(|p| p.normalize().as_vec3a()));
         let reach = corners.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
-        Self { span: Span::over(far.into_iter()), corners, normal, face, reach }
+        Self { span, corners, normal, face, reach }
     }
 
     /// How far a point stands before the plane.
