@@ -2,39 +2,47 @@
 
 use super::mesh::{Mesh, steps};
 use crate::form_factor::plain::IN_PLANE;
+use crate::visibility::{BoxTree, Inside};
 use glam::DVec3;
 
 /// Whether an edge of any face goes through the inside of another, or touches it. Where faces cross, one of them has
 /// an edge that goes through the other.
 pub(super) fn touches_itself(mesh: &Mesh) -> bool {
     let boxes: Vec<(DVec3, DVec3)> = (0..mesh.faces.len()).map(|face| bounds(mesh, face)).collect();
-    // Neighbours in the list are near each other, so that a box around a run of them is apart from most faces.
-    let runs: Vec<(DVec3, DVec3)> =
-        boxes.chunks(RUN).filter_map(|run| run.iter().copied().reduce(around)).collect();
-    (0..boxes.len()).any(|a| {
-        let near = (a / RUN..runs.len()).filter(|&run| meet(&boxes[a], &runs[run]));
-        near.flat_map(|run| run * RUN..boxes.len().min((run + 1) * RUN))
-            .filter(|&b| b > a && meet(&boxes[a], &boxes[b]))
-            .any(|b| touches(mesh, a, b) || touches(mesh, b, a))
+    let tree = BoxTree::new(&boxes);
+    let mut open = Vec::new();
+    (0..boxes.len()).any(|face| {
+        open.extend(tree.root());
+        while let Some(node) = open.pop() {
+            if !meet(boxes[face], (tree.node(node).low, tree.node(node).high)) {
+                continue;
+            }
+            match tree.inside(node) {
+                Inside::Boxes(inner) => open.extend(inner),
+                Inside::Things(others) => {
+                    let others = others.iter().map(|&other| other as usize);
+                    if others
+                        .filter(|&o| o != face && meet(boxes[face], boxes[o]))
+                        .any(|o| touches(mesh, face, o))
+                    {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
     })
 }
-
-/// Faces in a run.
-const RUN: usize = 32;
 
 /// How far from the edges of a face, relative to the mesh, its inside begins: faces that share a corner touch there.
 const INSIDE: f64 = 1e-9;
 
 fn bounds(mesh: &Mesh, face: usize) -> (DVec3, DVec3) {
     let corners = mesh.around(face).iter().map(|&corner| mesh.corners[corner as usize]);
-    corners.map(|p| (p, p)).reduce(around).expect("a face has corners")
+    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
 }
 
-fn around(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> (DVec3, DVec3) {
-    (a.0.min(b.0), a.1.max(b.1))
-}
-
-fn meet(a: &(DVec3, DVec3), b: &(DVec3, DVec3)) -> bool {
+fn meet(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> bool {
     (a.0.cmple(b.1) & b.0.cmple(a.1)).all()
 }
 
