@@ -64,7 +64,8 @@ impl Scene {
         for mesh in seen {
             pieces = subtract(pieces, |piece, outside| {
                 let seen_sender = SeenPolygon::new(piece, sender.normal, sender.face.0);
-                Obstruction::new(mesh, &seen_sender, coplanar).subtract(outside);
+                Obstruction::new(mesh, &seen_sender, coplanar)
+                    .subtract(&mut |piece| outside.push(Polygon::from_slice(piece)));
             });
         }
         pieces.iter().map(|piece| contour::form_factor(piece, receiver.normal)).sum()

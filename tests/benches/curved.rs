@@ -94,7 +94,8 @@ impl Scene {
             for mesh in seen.iter().filter(|mesh| mesh.span.meets(&whole.span)) {
                 for piece in pieces.drain(..) {
                     let piece = SeenPolygon::new(piece, sender.normal, sender.face.0);
-                    Obstruction::new(mesh, &piece, coplanar).subtract(&mut outside);
+                    Obstruction::new(mesh, &piece, coplanar)
+                        .subtract(&mut |piece| outside.push(Polygon::from_slice(piece)));
                 }
                 std::mem::swap(&mut pieces, &mut outside);
             }

@@ -13,20 +13,20 @@ use glam::DVec3;
 const TELLING: f64 = 1e-7;
 
 impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
-    /// Append to `outside` the convex pieces of the sender that the mesh does not hide, and say which case it was.
-    pub fn subtract(&self, outside: &mut Vec<Polygon>) -> Hides {
+    /// Hand to `outside` the convex pieces of the sender that the mesh does not hide, and say which case it was.
+    pub fn subtract(&self, outside: &mut impl FnMut(&[DVec3])) -> Hides {
         let mut arcs = Vec::new();
         let hides = self.outline(&mut arcs);
         match hides {
             Hides::All => {}
-            Hides::Nothing => outside.push(self.sender.corners.clone()),
+            Hides::Nothing => outside(&self.sender.corners),
             Hides::Part => self.cut(self.sender.corners.clone(), arcs, outside),
         }
         hides
     }
 
     /// Cut `polygon` along the longest of its arcs, and both halves along the others.
-    fn cut(&self, mut polygon: Polygon, mut arcs: Vec<Arc>, outside: &mut Vec<Polygon>) {
+    fn cut(&self, mut polygon: Polygon, mut arcs: Vec<Arc>, outside: &mut impl FnMut(&[DVec3])) {
         while let Some(splitter) = take_longest(&mut arcs) {
             let [hidden, open] =
                 [splitter.hidden, -splitter.hidden].map(|plane| half(&polygon, &arcs, plane));
@@ -41,7 +41,7 @@ impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
                 let Some((piece, inside)) = half else { continue };
                 if inside.is_empty() {
                     if !self.is_hidden(&piece, &splitter, side) {
-                        outside.push(piece);
+                        outside(&piece);
                     }
                 } else if let Some((piece, inside)) = rest.replace((piece, inside)) {
                     self.cut(piece, inside, outside);
