@@ -5,12 +5,12 @@
 
 use crate::hull::intruders;
 use crate::placed::Placed;
-use equilux_bake::cached::{Origin, cached};
+use equilux_bake::cached::{Origin, cached, foreseen};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{KERNEL_VERSION, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Request, Resolution, block};
 use equilux_formats::{
-    BakedLight, Content, Digest, Factors, LocalEquilibrium, Lookup, Manifest, Result, Rows, Store, Stored,
+    BakedLight, Content, Digest, Factors, LocalEquilibrium, Manifest, Result, Rows, Store,
 };
 use glam::DAffine3;
 use std::path::Path;
@@ -188,18 +188,6 @@ impl Coupler<'_> {
             manifest = manifest.digest(format!("instance {number} ({})", other.name), seen.digest());
         }
         manifest
-    }
-}
-
-/// Where `cached` would take the thing from.
-fn foreseen<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> Origin {
-    match store.load::<T>(&manifest.key()) {
-        Lookup::Found(_) => Origin::Reused,
-        Lookup::Damaged(error) => Origin::Computed(format!("the cached file cannot be used ({error})")),
-        Lookup::Missing => Origin::Computed(match store.last_manifest(name) {
-            None => "never computed before".into(),
-            Some(old) => manifest.difference(&old).unwrap_or_else(|| "the cached file is gone".into()),
-        }),
     }
 }
 

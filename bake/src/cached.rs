@@ -27,6 +27,23 @@ impl std::fmt::Display for Origin {
     }
 }
 
+/// Where [`cached`] would take the value from.
+pub fn foreseen<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> Origin {
+    look_up::<T>(store, name, manifest).map_or_else(Origin::Computed, |_| Origin::Reused)
+}
+
+/// The value if the cache has it, or why it has to be computed.
+fn look_up<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> std::result::Result<T, String> {
+    match store.load::<T>(&manifest.key()) {
+        Lookup::Found(value) => Ok(value),
+        Lookup::Missing => Err(match store.last_manifest(name) {
+            None => "never computed before".to_string(),
+            Some(old) => manifest.difference(&old).unwrap_or_else(|| "the cached file is gone".to_string()),
+        }),
+        Lookup::Damaged(error) => Err(format!("the cached file cannot be used ({error})")),
+    }
+}
+
 /// The value that `manifest` describes; `name` is what its older versions were called. `compute` returns none if it
 /// was stopped, and then so does this.
 pub fn cached<T: Stored>(
@@ -35,16 +52,12 @@ pub fn cached<T: Stored>(
     manifest: &Manifest,
     compute: impl FnOnce() -> Result<Option<T>>,
 ) -> Result<Option<(T, Origin)>> {
-    let reason = match store.load::<T>(&manifest.key()) {
-        Lookup::Found(value) => {
+    let reason = match look_up(store, name, manifest) {
+        Ok(value) => {
             store.remember(name, manifest)?;
             return Ok(Some((value, Origin::Reused)));
         }
-        Lookup::Missing => match store.last_manifest(name) {
-            None => "never computed before".to_string(),
-            Some(old) => manifest.difference(&old).unwrap_or_else(|| "the cached file is gone".to_string()),
-        },
-        Lookup::Damaged(error) => format!("the cached file cannot be used ({error})"),
+        Err(reason) => reason,
     };
     let Some(value) = compute()? else { return Ok(None) };
     store.save(manifest, &value)?;

@@ -2,11 +2,17 @@
 //! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
 //! face sides themselves are halved by place.
 
+use crate::visibility::rays::RayIndex;
 use equilux_formats::{ClusterTree, Element, Face, Geometry};
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// Steps between places that are smaller than this, relative to the extent, are rounding and no grid line.
 const SAME_LINE: f64 = 1e-6;
+
+/// An element with something before it nearer than this share of its face's extent is covered, and clusters with others
+/// that are.
+const COVERED: f64 = 0.1;
 
 /// The geometry of these elements and faces, elements put into the order of their hierarchy.
 pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
@@ -35,22 +41,29 @@ struct Side {
 }
 
 fn face_sides(elements: &[Element]) -> Vec<Side> {
-    let mut order: Vec<usize> = (0..elements.len()).collect();
-    let mut fronts: std::collections::HashMap<u32, DVec3> = std::collections::HashMap::new();
-    let mut back = vec![false; elements.len()];
-    for (i, element) in elements.iter().enumerate() {
-        let front = *fronts.entry(element.face.0).or_insert(element.normal);
-        back[i] = front.dot(element.normal) < 0.0;
+    let mut fronts: HashMap<u32, DVec3> = HashMap::new();
+    let mut boxes: HashMap<u32, (DVec3, DVec3)> = HashMap::new();
+    for Element { face, normal, centroid, .. } in elements {
+        fronts.entry(face.0).or_insert(*normal);
+        let (low, high) = boxes.entry(face.0).or_insert((*centroid, *centroid));
+        (*low, *high) = (low.min(*centroid), high.max(*centroid));
     }
-    // A lamp let into a ceiling shares its face but not its light: materials do not mix in a cluster.
-    let key = |i: usize| (elements[i].face, back[i], elements[i].material);
-    order.sort_by_key(|&i| (key(i), i));
-    let same = |&a: &usize, &b: &usize| key(a) == key(b);
+    let index = RayIndex::new(elements);
+    let is_covered = |e: &Element| {
+        let (low, high) = boxes[&e.face.0];
+        let near = COVERED * (high - low).length();
+        index.first_hit(e.centroid, e.normal).is_some_and(|hit| hit.distance < near)
+    };
+    // What shares a face need not share its light: a lamp let into a ceiling, the floor beneath a crate.
+    let key = |e: &Element| (e.face, fronts[&e.face.0].dot(e.normal) < 0.0, e.material, is_covered(e));
+    let keys: Vec<_> = elements.iter().map(key).collect();
+    let mut order: Vec<usize> = (0..elements.len()).collect();
+    order.sort_by_key(|&i| (keys[i], i));
     let side = |run: &[usize]| Side {
         elements: run.to_vec(),
         centre: run.iter().map(|&i| elements[i].centroid).sum::<DVec3>() / run.len() as f64,
     };
-    order.chunk_by(same).map(side).collect()
+    order.chunk_by(|&a, &b| keys[a] == keys[b]).map(side).collect()
 }
 
 #[derive(Clone, Copy)]

@@ -1,6 +1,6 @@
 //! Prepared part → [`BakedPart`]: its own block of form factors and its local equilibrium, from the cache if there.
 
-use crate::cached::{Origin, cached};
+use crate::cached::{Origin, cached, foreseen};
 use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
@@ -52,8 +52,7 @@ impl Oven<'_> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
         let mut form_factor_time = Duration::ZERO;
-        let name = |what: &str| format!("{what} of {} in {}", part.name, self.file.display());
-        let found = cached(self.store, &name("form factors"), &manifest, || {
+        let found = cached(self.store, &self.name(part, "form factors"), &manifest, || {
             self.monitor.begin(format!("form factors of {}", part.name), part.geometry.elements.len());
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
             let request = Request {
@@ -72,7 +71,7 @@ impl Oven<'_> {
         let Some((geometry, form_factors)) = found else { return Ok(None) };
         let start = Instant::now();
         let manifest = light_manifest(key.into(), &part.optics, part.solver);
-        let (light, light_origin) = cached(self.store, &name("light"), &manifest, || {
+        let (light, light_origin) = cached(self.store, &self.name(part, "light"), &manifest, || {
             self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
             self.refuse_endless_light(part, &geometry)?;
             Ok(Some(BakedLight {
@@ -96,6 +95,16 @@ impl Oven<'_> {
         };
         let light_time = start.elapsed();
         Ok(Some(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time }))
+    }
+
+    /// Where the form factors of a part would come from. Computes none of them.
+    pub fn foresee(&self, part: &PreparedPart) -> Origin {
+        let manifest = geometry_manifest(part, self.resolution);
+        foreseen::<BakedGeometry>(self.store, &self.name(part, "form factors"), &manifest)
+    }
+
+    fn name(&self, part: &PreparedPart, what: &str) -> String {
+        format!("{what} of {} in {}", part.name, self.file.display())
     }
 
     fn refuse_endless_light(&self, part: &PreparedPart, baked: &BakedGeometry) -> Result<()> {

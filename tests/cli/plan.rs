@@ -23,6 +23,11 @@ fn planned_and_done(workshop: &Workshop, size: &str) -> Value {
         parts.iter().map(|part| part.pointer(pointer).expect("a value").clone()).collect()
     };
     assert_eq!(parts(&plan, "/form_factors/how"), parts(&report, "/form_factors"), "parts");
+    let reasons = parts(&plan, "/form_factors/reason");
+    let said = parts(&report, "/reason").into_iter();
+    let said =
+        said.map(|reason| reason.as_str().and_then(|r| Some(r.split_once(": ")?.1.into())).unwrap_or(reason));
+    assert_eq!(reasons, said.collect::<Vec<Value>>(), "reasons");
     let places = plan["instances"].as_array().expect("a list");
     let couplings = places.iter().filter(|place| place["coupling"]["how"] == "computed").count();
     let computed = report["blocks"]["coupling_computed"].as_u64().expect("a number");

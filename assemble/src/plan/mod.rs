@@ -108,7 +108,7 @@ pub fn plan(job: &Job) -> Result<Plan> {
         elements: world.elements.len(),
         element_size: prepared.element_size.to_string(),
         resolution: resolution.to_string(),
-        parts: planned_parts(&prepared, &baked),
+        parts: planned_parts(&prepared, &baked, |part| oven.foresee(part)),
         unseen: unseen.iter().map(|pair| pair.map(name)).collect(),
         left_out: left_out(&prepared, unseen.len()),
         classic_matrix_bytes: world.elements.len().pow(2) * size_of::<f64>(),
@@ -120,15 +120,16 @@ pub fn plan(job: &Job) -> Result<Plan> {
     })
 }
 
-fn planned_parts(prepared: &Prepared, baked: &[Option<Baked>]) -> Vec<PlannedPart> {
+fn planned_parts(
+    prepared: &Prepared,
+    baked: &[Option<Baked>],
+    foresee: impl Fn(&PreparedPart) -> Origin,
+) -> Vec<PlannedPart> {
     let planned = |(number, (part, baked)): (usize, (&PreparedPart, &Option<Baked>))| PlannedPart {
         name: part.name.clone(),
         elements: part.geometry.elements.len(),
         places: prepared.instances.iter().filter(|instance| instance.part.index() == number).count(),
-        form_factors: match baked {
-            Some(baked) => Step::of(&baked.form_factors),
-            None => Step::computed("the cache has none of this geometry with these settings"),
-        },
+        form_factors: Step::of(&baked.as_ref().map_or_else(|| foresee(part), |b| b.form_factors.clone())),
         local_solver: format!("{:?}", part.solver),
     };
     prepared.parts.iter().zip(baked).enumerate().map(planned).collect()

@@ -5,6 +5,9 @@ use equilux_formats::{ClusterTree, Optics, Rows};
 /// Losses below this are rounding of the row sums, not light that gets away.
 const NO_LOSS: f64 = 1e-12;
 
+/// What a row in steps may lack besides a step, because a search for senders ends when less is missing.
+const MISSED: f64 = 1e-5;
+
 /// The first element of a group that exchanges light only among itself, reflects all of it in some channel and emits
 /// in that channel. `rows(i)` lists (sender, form factor) of element i over all elements.
 pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>) -> Option<usize> {
@@ -41,7 +44,9 @@ pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>)
 /// The same for one block.
 pub fn endless_in_block(optics: &Optics, block: &Rows, clusters: &ClusterTree) -> Option<usize> {
     endless_light(optics, |i| {
-        let mut row = Vec::new();
+        // What a row may lack counts as staying: clusters must not open a closed part.
+        let step = block.step_of(i);
+        let mut row = if step > 0.0 { vec![(i, step + MISSED)] } else { vec![] };
         for (node, value) in block.row(i) {
             clusters.spread(node, &mut |element, share| row.push((element, value * share)));
         }

@@ -27,8 +27,8 @@ pub struct Cone {
 
 /// How a sender lies to an occluder's pyramids.
 pub struct Lies {
-    /// Lanes that have nothing hidden.
-    pub aside: [bool; LANES],
+    /// At most zero for lanes that have nothing hidden.
+    pub aside: Lane,
     /// The planes that cut the sender, a bit each; the last bit stands for all planes from there on. Without any, and
     /// not aside, all is hidden.
     pub cuts: [u64; LANES],
@@ -131,7 +131,7 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
 /// of a plane count as in it, so that a sender that shares an edge with the silhouette is hidden, or not, exactly.
 #[inline(always)]
 pub fn lies(planes: &[Planes], corners: &[Vectors], slack: &Lane) -> Lies {
-    let mut lies = Lies { aside: [false; LANES], cuts: [0; LANES] };
+    let mut lies = Lies { aside: [f64::INFINITY; LANES], cuts: [0; LANES] };
     for (number, [x, y, z, offset]) in planes.iter().enumerate() {
         let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
         for corner in corners {
@@ -146,7 +146,8 @@ pub fn lies(planes: &[Planes], corners: &[Vectors], slack: &Lane) -> Lies {
         }
         let bit = 1u64 << number.min(REST);
         for lane in 0..LANES {
-            lies.aside[lane] |= high[lane] <= slack[lane];
+            let above = high[lane] - slack[lane];
+            lies.aside[lane] = if above < lies.aside[lane] { above } else { lies.aside[lane] };
             lies.cuts[lane] |= if low[lane] < -slack[lane] { bit } else { 0 };
         }
     }

@@ -14,7 +14,7 @@ use std::ops::Range;
 const COMPLETE: f64 = 1e-12;
 
 /// The same where entries stand for clusters anyway.
-const NEARLY_COMPLETE: f64 = 5e-6;
+pub const NEARLY_COMPLETE: f64 = 5e-6;
 
 /// How much wider clusters open that nothing stands before, found by measuring: it gives all links the same share of the
 /// error in furnished rooms.
@@ -22,6 +22,16 @@ const CLEAR: f64 = 5.0;
 
 /// Levels of the senders' hierarchy from one narrowing of the list to the next.
 const NARROW_EVERY: u32 = 2;
+
+/// Clusters behind something are tried though they promise an error up to this many times too large: often little of
+/// them is seen.
+const TRY: f64 = 16.0;
+
+/// Share of the error that may be left to such a cluster: what little is seen of it may be unlike the rest.
+const SEEN: f64 = 0.3;
+
+/// After a vain try the next is made where the promise is this much smaller.
+const AGAIN: f64 = 0.25;
 
 /// One cluster of receivers looking for its senders.
 pub struct Search<'a> {
@@ -43,6 +53,16 @@ struct Open {
     candidates: Range<usize>,
     /// How many levels above the list was last narrowed.
     levels: u32,
+    /// What the last try of a cluster above promised to err by.
+    tried: f64,
+}
+
+/// What came of a sender.
+enum Taken {
+    /// It has its entry, or needs none.
+    Done,
+    /// Too much of it is seen for one entry.
+    TooMuch,
 }
 
 impl<'a> Search<'a> {
@@ -69,7 +89,7 @@ impl<'a> Search<'a> {
     fn run(mut self, frontier: &Frontier<'a>) -> (RowGroup, Vec<f64>) {
         for (node, list) in frontier.senders() {
             let list = self.candidates.adopt(list);
-            self.open(node, list, 0);
+            self.open(node, list, 0, f64::INFINITY);
         }
         let enough = if self.request.resolution.opening == 0.0 { COMPLETE } else { NEARLY_COMPLETE };
         while let Some(next) = self.queue.pop() {
@@ -81,19 +101,21 @@ impl<'a> Search<'a> {
         self.finish()
     }
 
-    fn open(&mut self, node: u32, candidates: Range<usize>, levels: u32) {
+    fn open(&mut self, node: u32, candidates: Range<usize>, levels: u32, tried: f64) {
         let distance = self.receivers.viewers.distance_to(&self.request.world.nodes[node as usize]);
-        self.queue.push(Open { distance, node, candidates, levels });
+        self.queue.push(Open { distance, node, candidates, levels, tried });
     }
 
-    fn visit(&mut self, Open { node, candidates, levels, .. }: Open) {
+    fn visit(&mut self, Open { node, candidates, levels, tried, .. }: Open) {
         let sender = &self.request.world.nodes[node as usize];
         let viewers = &self.receivers.viewers;
         if viewers.cannot_see(sender, self.request.world) {
             return;
         }
+        let opening = self.request.resolution.opening;
+        let error = if sender.children.is_none() { 0.0 } else { self.error(sender) };
         // Lists are narrowed where it may decide something, and every few levels at least.
-        let may_end = sender.children.is_none() || self.is_small(sender, true);
+        let may_end = error <= opening * CLEAR.max(TRY);
         let (verdict, levels) = if may_end {
             (self.candidates.occluders(candidates, viewers, sender), 0)
         } else if levels + 1 == NARROW_EVERY {
@@ -102,44 +124,59 @@ impl<'a> Search<'a> {
             (Verdict::Between(candidates), levels + 1)
         };
         let Verdict::Between(kept) = verdict else { return };
-        match sender.children {
-            Some(children) if !(may_end && self.is_small(sender, kept.is_empty())) => {
-                children.into_iter().for_each(|child| self.open(child, kept.clone(), levels));
-            }
-            _ => self.take(node, kept),
+        let clear = kept.is_empty();
+        let found = if error <= opening * if clear { CLEAR } else { 1.0 } {
+            self.take(node, kept.clone(), f64::INFINITY)
+        } else if may_end && !clear && error <= tried * AGAIN {
+            self.take(node, kept.clone(), SEEN * opening / self.slant(sender))
+        } else {
+            Taken::TooMuch
+        };
+        if let (Taken::TooMuch, Some(children)) = (found, sender.children) {
+            let tried = if may_end { error.min(tried) } else { tried };
+            children.into_iter().for_each(|child| self.open(child, kept.clone(), levels, tried));
         }
     }
 
-    /// Whether a cluster may have one entry: it is a polygon, and its form factor times its size over its distance is
-    /// small. What an entry errs by is this product times how much the radiosity varies within the cluster. That is
-    /// more where something stands between, because what is hidden often has other light than what is not.
-    fn is_small(&self, sender: &Node, clear: bool) -> bool {
+    /// What an entry for a cluster may err by: its form factor, at most, times its size over its distance, times how much
+    /// the radiosity varies within the cluster, which nobody knows here. The variation is larger where something stands
+    /// between, because what is hidden often has other light than what is not. Infinite if it can have no entry.
+    fn error(&self, sender: &Node) -> f64 {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {
-            return false;
+            return f64::INFINITY;
         }
         let radius = (sender.high - sender.low).length() / 2.0;
         let distance = self.receivers.viewers.distance_to(sender) + radius;
         if distance <= 2.0 * radius {
-            return false;
+            return f64::INFINITY;
         }
-        let form_factor = sender.area / (std::f64::consts::PI * distance * distance);
-        let opening = self.request.resolution.opening * if clear { CLEAR } else { 1.0 };
-        form_factor * radius / distance <= opening
+        sender.area / (std::f64::consts::PI * distance * distance) * self.slant(sender)
     }
 
-    /// One entry for the sender: its form factor for every receiver.
-    fn take(&mut self, node: u32, candidates: Range<usize>) {
+    /// Size over distance.
+    fn slant(&self, sender: &Node) -> f64 {
+        let radius = (sender.high - sender.low).length() / 2.0;
+        radius / (self.receivers.viewers.distance_to(sender) + radius)
+    }
+
+    /// One entry for the sender, its form factor for every receiver, unless one of them is above `most`.
+    fn take(&mut self, node: u32, candidates: Range<usize>, most: f64) -> Taken {
         let sender = &self.request.world.nodes[node as usize];
         let first = self.values.len();
         let occluders = self.candidates.slice(candidates);
         if !self.evaluator.evaluate(&self.receivers, sender, occluders, &mut self.values) {
             self.values.truncate(first);
-            return;
+            return Taken::Done;
+        }
+        if self.values[first..].iter().any(|&value| value > most) {
+            self.values.truncate(first);
+            return Taken::TooMuch;
         }
         for (missing, value) in self.missing.iter_mut().zip(&self.values[first..]) {
             *missing -= value;
         }
         self.columns.push(node - self.request.columns.start as u32);
+        Taken::Done
     }
 
     /// Columns in rising order, values by receiver.

@@ -199,10 +199,10 @@ impl Chunk {
         for (number, planes) in pyramids.iter().enumerate() {
             let Lies { aside, cuts } = lies(planes, &self.corners, &self.slack);
             for lane in 0..LANES {
-                dark[lane] |= !aside[lane] & (cuts[lane] == 0);
+                dark[lane] |= (aside[lane] > 0.0) & (cuts[lane] == 0);
             }
             for lane in 0..LANES {
-                if !aside[lane] && cuts[lane] != 0 {
+                if aside[lane] > 0.0 && cuts[lane] != 0 {
                     self.cuts[lane].push(Cut { before: number as u32, planes: cuts[lane] });
                 }
             }
