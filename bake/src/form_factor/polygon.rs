@@ -67,14 +67,17 @@ pub enum Hides {
 
 impl Pyramid {
     /// The pyramid over `occluder`, which must lie wholly in the open half space before the sender's plane and whose
-    /// own plane must not contain the origin.
+    /// own plane must not contain the origin. Where cutting left two corners that are the same but for rounding, the edge
+    /// between them has no direction, and no plane.
     pub fn over(occluder: &[DVec3], normal: DVec3) -> Self {
         // Seen from the origin the corners run counter-clockwise around the inside if the normal points away from it.
         let facing = if normal.dot(occluder[0]) > 0.0 { 1.0 } else { -1.0 };
         let planes = (0..occluder.len())
-            .map(|i| {
+            .filter_map(|i| {
                 let (a, b) = (occluder[i], occluder[(i + 1) % occluder.len()]);
-                a.cross(b - a) * facing
+                let plane = a.cross(b - a) * facing;
+                let slack = IN_PLANE * a.length_squared();
+                (plane.length_squared() > slack * slack).then_some(plane)
             })
             .collect();
         Self::between(planes)
