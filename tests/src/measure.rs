@@ -3,12 +3,14 @@
 use crate::levels::furnished;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::equilibrium::{added, apply, scaled};
+use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Request, Resolution, block};
+use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
-use equilux_formats::{Geometry, Optics, Part, Rgb, Rows};
-use glam::DAffine3;
-use std::time::Duration;
+use equilux_formats::{Element, Geometry, Optics, Part, Rgb, Rows};
+use glam::{DAffine3, DVec3};
+use std::time::{Duration, Instant};
 
 /// A furnished level, every room a part.
 pub struct Level {
@@ -79,8 +81,11 @@ impl Level {
         loop {
             let nodes = self.means(&radiosity);
             let irradiance = blocks.iter().flat_map(|block| apply(block, &nodes));
-            let next: Vec<Rgb> =
-                irradiance.zip(reflectance).zip(emission).map(|((h, &rho), &e)| added(e, scaled(rho, h))).collect();
+            let next: Vec<Rgb> = irradiance
+                .zip(reflectance)
+                .zip(emission)
+                .map(|((h, &rho), &e)| added(e, scaled(rho, h)))
+                .collect();
             let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
             let change = most(&mut next.iter().zip(&radiosity).map(|(a, b)| (a[0] - b[0]).abs()));
             let brightest = most(&mut next.iter().map(|b| b[0]));
@@ -108,5 +113,70 @@ impl Level {
             geometry.clusters.append_means(&radiosity[self.world.elements_of(instance)], &mut nodes);
         }
         nodes
+    }
+}
+
+/// Rows found by casting rays, the usual way: the unoccluded form factor of each pair times the share of `rays` points on
+/// the sender that the receiver sees. Dense; for comparison.
+pub struct Cast {
+    /// The receivers.
+    pub receivers: Vec<usize>,
+    /// Their rows, one value an element.
+    pub rows: Vec<Vec<f64>>,
+    /// Time on one thread.
+    pub time: Duration,
+}
+
+impl Level {
+    /// `count` receivers evenly through all elements.
+    pub fn sample(&self, count: usize) -> Vec<usize> {
+        let all = self.world.elements.len();
+        (0..count.min(all)).map(|k| (2 * k + 1) * all / (2 * count.min(all))).collect()
+    }
+
+    /// The rows of some receivers with so many rays a pair.
+    pub fn cast(&self, receivers: Vec<usize>, rays: usize) -> Cast {
+        let elements = &self.world.elements;
+        let index = RayIndex::new(elements);
+        let start = Instant::now();
+        let form_factor = |i: usize, j: usize| {
+            let Some(polygon) = plain::visible_side(&elements[i], &elements[j]) else { return 0.0 };
+            let whole = contour::form_factor(&polygon, elements[i].normal);
+            let seen = |k: &usize| index.sees(elements[i].centroid, point_of(&elements[j], *k, i));
+            whole * (0..rays).filter(seen).count() as f64 / rays as f64
+        };
+        let row = |&i: &usize| (0..elements.len()).map(|j| form_factor(i, j)).collect();
+        let rows = receivers.iter().map(row).collect();
+        Cast { receivers, rows, time: start.elapsed() }
+    }
+
+    /// Root-mean-square error of what these rows gather of `radiosity`, given what they should, over its mean.
+    pub fn gather_error(&self, cast: &Cast, radiosity: &[Rgb], exact: &[f64]) -> f64 {
+        let gathered =
+            cast.rows.iter().map(|row| row.iter().zip(radiosity).map(|(f, b)| f * b[0]).sum::<f64>());
+        let square: f64 = gathered.zip(exact).map(|(got, want)| (got - want).powi(2)).sum();
+        (square / exact.len() as f64).sqrt() / (exact.iter().sum::<f64>() / exact.len() as f64)
+    }
+
+    /// Irradiance of some receivers by stored rows, W/m², first channel.
+    pub fn gathered(&self, blocks: &[Rows], radiosity: &[Rgb], receivers: &[usize]) -> Vec<f64> {
+        let nodes = self.means(radiosity);
+        let irradiance: Vec<Rgb> = blocks.iter().flat_map(|block| apply(block, &nodes)).collect();
+        receivers.iter().map(|&i| irradiance[i][0]).collect()
+    }
+}
+
+/// The `k`-th point on an element, from a sequence that fills it evenly (Roberts 2018), begun elsewhere for each receiver.
+fn point_of(element: &Element, k: usize, receiver: usize) -> DVec3 {
+    let along = |step: f64, salt: f64| ((k as f64 + 0.5) * step + receiver as f64 * salt).fract();
+    let (u, v) = (
+        along(0.754_877_666_246_692_8, 0.618_033_988_749_894_9),
+        along(0.569_840_290_998_053_2, 0.414_213_562_373_095),
+    );
+    match *element.corners.as_slice() {
+        [a, b, c] if u + v > 1.0 => a + (b - a) * (1.0 - u) + (c - a) * (1.0 - v),
+        [a, b, c] => a + (b - a) * u + (c - a) * v,
+        [a, b, c, d] => (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v,
+        _ => element.centroid,
     }
 }
