@@ -115,9 +115,9 @@ impl Shaft {
         let [nx, ny, nz] = &self.normals;
         let mut nearest = [f64::INFINITY; PLANES];
         for p in corners {
-            for k in 0..PLANES {
+            for (k, nearest) in nearest.iter_mut().enumerate() {
                 let along = nx[k] * p.x + ny[k] * p.y + nz[k] * p.z;
-                nearest[k] = if along < nearest[k] { along } else { nearest[k] };
+                *nearest = if along < *nearest { along } else { *nearest };
             }
         }
         let mut outside = false;

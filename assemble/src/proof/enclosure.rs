@@ -8,10 +8,8 @@
 
 use crate::exchange::Node;
 use equilux_bake::equilibrium::{added, apply, largest, scaled};
+use equilux_bake::treecode::MISSED;
 use equilux_formats::{ClusterTree, Precision, Rgb, Rows};
-
-/// A search for senders ends when less than this is missing of a row.
-const MISSED: f64 = 1e-5;
 
 /// Sweeps end when they lower the bound by less than this share, and after so many.
 const SWEEPS: (f64, usize) = (1e-3, 200);

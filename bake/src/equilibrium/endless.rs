@@ -1,12 +1,10 @@
 //! Light that never ends: elements that see only each other, absorb nothing, and emit have no equilibrium.
 
+use crate::treecode::MISSED;
 use equilux_formats::{ClusterTree, Optics, Rows};
 
 /// Losses below this are rounding of the row sums, not light that gets away.
 const NO_LOSS: f64 = 1e-12;
-
-/// What a row in steps may lack besides a step, because a search for senders ends when less is missing.
-const MISSED: f64 = 1e-5;
 
 /// The first element of a group that exchanges light only among itself, reflects all of it in some channel and emits
 /// in that channel. `rows(i)` lists (sender, form factor) of element i over all elements.

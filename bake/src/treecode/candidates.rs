@@ -37,6 +37,9 @@ pub enum Verdict {
 /// Boxes larger than this share of receivers or sender are opened: smaller ones would only lengthen the list.
 const OPEN_ABOVE: f64 = 0.5;
 
+/// What is nearer to a face than this, relative to its extent or distance, may be part of it.
+const ON_FACE: f64 = 1e-9;
+
 impl<'a> Candidates<'a> {
     /// The list that holds everything.
     pub fn all(world: &'a World) -> (Self, Range<usize>) {
@@ -168,7 +171,7 @@ impl<'a> Between<'a> {
             sender_occluder: sender.side.map(|side| world.occluders.of_face[side.face.index()]),
             axis: [middle(&viewers.hull), middle(corners)],
             narrowest: if near == 0.0 { 0.0 } else { near * far / (near + far) },
-            slack: 1e-9 * far,
+            slack: ON_FACE * far,
             corners,
         }
     }
@@ -220,7 +223,10 @@ impl<'a> Between<'a> {
         };
         let edges = || 0..face.corners.len();
         edges().all(|i| inwards(i, from).dot(axis) >= 0.0)
-            && self.viewers.hull.iter().all(|&p| face.normal.dot(p - origin) * side > 0.0)
+            // Strictly before it: viewers may lie on the face themselves, and look away from it.
+            && self.viewers.hull.iter().all(|&p| {
+                face.normal.dot(p - origin) * side.signum() > ON_FACE * (p - origin).length()
+            })
             // Strictly beyond: a face must not hide a sender that it is part of.
             && self.corners.iter().all(|&p| face.normal.dot(p - origin) * side.signum() < -self.slack)
             && self.viewers.hull.iter().all(|&from| {

@@ -48,6 +48,10 @@ impl Resolution {
     }
 }
 
+/// What a row whose entries stand for clusters may miss of all it sees, at most: a search ends when a tenth of this is missing,
+/// and the rest is for rounding.
+pub const MISSED: f64 = 1e-5;
+
 /// Opening per tolerance, found by measuring.
 const OPENING: f64 = 0.1;
 

@@ -1,6 +1,6 @@
 //! One flat cluster of receivers looking for its senders.
 
-use super::Request;
+use super::{MISSED, Request};
 use super::candidates::{Candidates, Verdict};
 use super::descent::Frontier;
 use super::receivers::Receivers;
@@ -14,7 +14,7 @@ use std::ops::Range;
 const COMPLETE: f64 = 1e-12;
 
 /// The same where entries stand for clusters anyway.
-pub const NEARLY_COMPLETE: f64 = 5e-6;
+const NEARLY_COMPLETE: f64 = MISSED / 10.0;
 
 /// How much wider clusters open that nothing stands before, found by measuring: it gives all links the same share of the
 /// error in furnished rooms.
