@@ -1,10 +1,13 @@
-//! What blocks light: closed convex solids as a whole, all other faces one by one, in a hierarchy of boxes.
+//! What blocks light: closed convex solids and curved meshes as a whole, all other faces one by one, in a hierarchy of
+//! boxes.
 //!
 //! Seen from a point outside, a convex solid hides exactly the pyramid over its silhouette: the loop of edges between
-//! faces that look at the point and faces that do not.
+//! faces that look at the point and faces that do not. What a mesh hides is told by [`crate::meshes`].
 
+use crate::meshes::Mesh;
 use crate::outline::{Edge, Outline, Plane};
 use crate::planes::FLATNESS;
+use crate::treecode::box_corners;
 use crate::visibility::BoxTree;
 use equilux_formats::Face;
 use glam::DVec3;
@@ -12,15 +15,15 @@ use std::collections::HashMap;
 
 /// All occluders of a world.
 pub struct Occluders {
-    /// The occluders.
+    /// The occluders; in the end the faces of meshes.
     pub all: Vec<Occluder>,
-    /// Their boxes.
+    /// Their boxes, but for those of the faces of meshes.
     pub tree: BoxTree,
     /// The occluder that each face belongs to.
     pub of_face: Vec<u32>,
 }
 
-/// A face, or a closed convex solid.
+/// A face, or faces that hide as a whole.
 pub struct Occluder {
     /// Lowest corner of its box.
     pub low: DVec3,
@@ -28,47 +31,104 @@ pub struct Occluder {
     pub high: DVec3,
     /// Diagonal of its box.
     pub diameter: f64,
-    /// Its corners.
+    /// Its corners; of a mesh, those of its box.
     pub corners: Vec<DVec3>,
-    /// Its faces: one, or all of a solid.
+    /// Its faces: one, or all that hide together.
     pub faces: Vec<u32>,
-    /// Its edges; sides are in the order of `faces`.
-    pub outline: Outline,
+    /// What it is.
+    pub shape: Shape,
 }
+
+/// How what is hidden is found.
+pub enum Shape {
+    /// One face, by its edges.
+    Face(Outline),
+    /// A closed convex solid, by its edges; sides are in the order of the faces.
+    Solid(Outline),
+    /// Faces of any shape, by their silhouette.
+    Mesh(Box<Together>),
+}
+
+/// Faces that hide together, or, where only few of them matter, one by one.
+pub struct Together {
+    /// All of them.
+    pub mesh: Mesh,
+    /// Boxes around each.
+    pub tree: BoxTree,
+    /// The occluder that the first of them is on its own; the others follow.
+    pub first: u32,
+}
+
+/// Connected faces fewer than these hide one by one: a silhouette would hardly be shorter than their edges.
+const MESH: usize = 24;
+
+/// Faces hide together as a mesh where most edges bend by less than this angle's cosine, 45°. What is bent more, such as
+/// a building's shell, has few, large faces, of which one alone can hide whole clusters from each other: found sooner.
+const BEND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Occluders {
     /// The occluders that `faces` make.
     pub fn new(faces: &[Face]) -> Self {
         let mut all = Vec::new();
         let mut of_face = vec![u32::MAX; faces.len()];
+        let mut add = |occluder: Occluder| {
+            occluder.faces.iter().for_each(|&face| of_face[face as usize] = all.len() as u32);
+            all.push(occluder);
+        };
         for group in connected(faces) {
             if let Some(solid) = convex_solid(&group, faces) {
-                group.iter().for_each(|&face| of_face[face as usize] = all.len() as u32);
-                all.push(solid);
+                add(solid);
+            } else if is_curved(&group, faces) {
+                add(Occluder::mesh(group, faces));
             } else {
-                for face in group {
-                    of_face[face as usize] = all.len() as u32;
-                    let Face { corners, normal } = &faces[face as usize];
-                    all.push(Occluder::new(corners.clone(), vec![face], Outline::of_face(corners, *normal)));
-                }
+                group.into_iter().for_each(|face| add(Occluder::face(face, &faces[face as usize])));
             }
         }
-        let boxes: Vec<(DVec3, DVec3)> = all.iter().map(|o: &Occluder| (o.low, o.high)).collect();
-        Self { tree: BoxTree::new(&boxes), all, of_face }
+        let tree = tree(&all);
+        for number in 0..all.len() {
+            let first = all.len() as u32;
+            let Shape::Mesh(together) = &mut all[number].shape else { continue };
+            together.first = first;
+            let inside = all[number].faces.iter().map(|&f| Occluder::face(f, &faces[f as usize]));
+            all.extend(inside.collect::<Vec<_>>());
+        }
+        Self { tree, all, of_face }
+    }
+
+    /// An occluder, if it is a mesh.
+    pub fn mesh(&self, occluder: u32) -> Option<&Mesh> {
+        match &self.all[occluder as usize].shape {
+            Shape::Mesh(together) => Some(&together.mesh),
+            Shape::Face(_) | Shape::Solid(_) => None,
+        }
     }
 }
 
 impl Occluder {
-    fn new(corners: Vec<DVec3>, faces: Vec<u32>, outline: Outline) -> Self {
+    fn new(corners: Vec<DVec3>, faces: Vec<u32>, shape: Shape) -> Self {
         let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        Self { low, high, diameter: (high - low).length(), corners, faces, outline }
+        Self { low, high, diameter: (high - low).length(), corners, faces, shape }
     }
 
-    /// Whether it is a closed convex solid.
-    pub fn is_solid(&self) -> bool {
-        !self.outline.thin
+    fn face(number: u32, Face { corners, normal }: &Face) -> Self {
+        Self::new(corners.clone(), vec![number], Shape::Face(Outline::of_face(corners, *normal)))
     }
+
+    fn mesh(group: Vec<u32>, faces: &[Face]) -> Self {
+        let mesh = Mesh::from_faces(&group, faces);
+        let inside: Vec<Self> = group.iter().map(|&f| Self::face(f, &faces[f as usize])).collect();
+        let corners = box_corners(mesh.low, mesh.high).to_vec();
+        Self::new(
+            corners,
+            group,
+            Shape::Mesh(Box::new(Together { mesh, tree: tree(&inside), first: u32::MAX })),
+        )
+    }
+}
+
+fn tree(occluders: &[Occluder]) -> BoxTree {
+    BoxTree::new(&occluders.iter().map(|o| (o.low, o.high)).collect::<Vec<_>>())
 }
 
 /// A point as a key: equal to the bit.
@@ -76,6 +136,11 @@ type Bits = [u64; 3];
 
 fn bits(p: DVec3) -> Bits {
     (p + 0.0).to_array().map(f64::to_bits)
+}
+
+/// An edge as a key, whichever way it runs.
+fn undirected(a: DVec3, b: DVec3) -> (Bits, Bits) {
+    if bits(a) < bits(b) { (bits(a), bits(b)) } else { (bits(b), bits(a)) }
 }
 
 fn edges(face: &Face) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
@@ -89,8 +154,7 @@ fn connected(faces: &[Face]) -> Vec<Vec<u32>> {
     let mut group: Vec<usize> = (0..faces.len()).collect();
     for (number, face) in faces.iter().enumerate() {
         for (a, b) in edges(face) {
-            let key = if bits(a) < bits(b) { (bits(a), bits(b)) } else { (bits(b), bits(a)) };
-            let other = *first_at.entry(key).or_insert(number);
+            let other = *first_at.entry(undirected(a, b)).or_insert(number);
             let (x, y) = (find(&mut group, number), find(&mut group, other));
             group[x.max(y)] = x.min(y);
         }
@@ -110,6 +174,25 @@ fn find(group: &mut [usize], mut i: usize) -> usize {
         i = group[i];
     }
     i
+}
+
+/// Whether these connected faces are a tessellated curved surface: see [`BEND`]. Edges that do not bend tell nothing.
+fn is_curved(group: &[u32], faces: &[Face]) -> bool {
+    if group.len() < MESH {
+        return false;
+    }
+    let mut first_at: HashMap<(Bits, Bits), &Face> = HashMap::new();
+    let (mut bent, mut little) = (0, 0);
+    for face in group.iter().map(|&face| &faces[face as usize]) {
+        for (a, b) in edges(face) {
+            let Some(other) = first_at.insert(undirected(a, b), face) else { continue };
+            let cosine = face.normal.dot(other.normal).abs();
+            let flat = face.normal.cross(other.normal).length() <= FLATNESS;
+            bent += usize::from(!flat);
+            little += usize::from(!flat && cosine > BEND);
+        }
+    }
+    2 * little > bent
 }
 
 /// The solid that these connected faces bound, if each edge lies between two of them and every corner behind all.
@@ -141,16 +224,13 @@ fn convex_solid(group: &[u32], faces: &[Face]) -> Option<Occluder> {
     let size = corners.iter().map(|&p| (p - corners[0]).length()).fold(0.0, f64::max);
     let behind =
         |face: &Face| corners.iter().all(|&p| face.normal.dot(p - face.corners[0]) <= FLATNESS * size);
-    group
-        .iter()
-        .all(|&face| behind(&faces[face as usize]))
-        .then(|| {
-            let side = |&face: &u32| {
-                let face = &faces[face as usize];
-                Plane { normal: face.normal, point: face.corners[0] }
-            };
-            let sides = group.iter().map(side).collect();
-            let outline = Outline { sides, edges: solid_edges, size: 2.0 * size, thin: false };
-            Occluder::new(corners, group.to_vec(), outline)
-        })
+    group.iter().all(|&face| behind(&faces[face as usize])).then(|| {
+        let side = |&face: &u32| {
+            let face = &faces[face as usize];
+            Plane { normal: face.normal, point: face.corners[0] }
+        };
+        let sides = group.iter().map(side).collect();
+        let outline = Outline { sides, edges: solid_edges, size: 2.0 * size, thin: false };
+        Occluder::new(corners, group.to_vec(), Shape::Solid(outline))
+    })
 }

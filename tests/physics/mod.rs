@@ -1,4 +1,5 @@
 //! Truths of light that every way of computing must keep.
 
 mod closed;
+mod curved;
 mod from_a_point;

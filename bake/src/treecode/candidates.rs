@@ -3,11 +3,13 @@
 
 use super::viewers::{Viewers, box_corners};
 use crate::form_factor::wide::vectorised;
+use crate::occluders::{Shape, Together};
 use crate::shaft::Shaft;
 use crate::visibility::Inside;
 use crate::world::{Node, World};
 use equilux_formats::{Face, FaceId};
 use glam::DVec3;
+use smallvec::SmallVec;
 use std::ops::Range;
 
 /// All lists of one search, one after the other.
@@ -39,6 +41,9 @@ const OPEN_ABOVE: f64 = 0.5;
 
 /// What is nearer to a face than this, relative to its extent or distance, may be part of it.
 const ON_FACE: f64 = 1e-9;
+
+/// Up to this many faces of a mesh hide one by one, which shows when one of them hides everything; more hide together.
+const FEW: usize = 8;
 
 impl<'a> Candidates<'a> {
     /// The list that holds everything.
@@ -120,6 +125,13 @@ impl<'a> Candidates<'a> {
                     if between.is_aside(index) {
                         continue;
                     }
+                    if let Shape::Mesh(together) = &self.world.occluders.all[index as usize].shape {
+                        match between.faces_of(together) {
+                            Some(few) => self.open.extend(few.into_iter().map(Entry::Occluder)),
+                            None => self.entries.push(entry),
+                        }
+                        continue;
+                    }
                     if between.is_blocked_by(index) {
                         self.open.clear();
                         return Verdict::Hidden;
@@ -180,19 +192,50 @@ impl<'a> Between<'a> {
     fn is_aside(&self, index: u32) -> bool {
         let occluder = &self.world.occluders.all[index as usize];
         let flat = self.viewers.flat.as_ref();
-        if occluder.is_solid() {
+        match occluder.shape {
             // A convex solid hides nothing from its own surface, and nothing of it.
-            if flat.is_some_and(|flat| index == flat.occluder) || Some(index) == self.sender_occluder {
-                return true;
+            Shape::Solid(_) => {
+                if flat.is_some_and(|flat| index == flat.occluder) || Some(index) == self.sender_occluder {
+                    return true;
+                }
             }
-        } else {
-            let face = FaceId(occluder.faces[0]);
-            let ends = [flat.map(|flat| flat.face), self.sender_face];
-            if ends.into_iter().flatten().any(|end| self.world.coplanar(end, face)) {
-                return true;
+            Shape::Face(_) => {
+                let face = FaceId(occluder.faces[0]);
+                let ends = [flat.map(|flat| flat.face), self.sender_face];
+                if ends.into_iter().flatten().any(|end| self.world.coplanar(end, face)) {
+                    return true;
+                }
             }
+            Shape::Mesh(_) => {}
         }
         self.shaft.misses_box(occluder.low, occluder.high) || self.shaft.misses(&occluder.corners)
+    }
+
+    /// The faces of a mesh that may stand in between; none if they are more than [`FEW`].
+    fn faces_of(&self, Together { tree, first, .. }: &Together) -> Option<SmallVec<[u32; FEW]>> {
+        let mut faces = SmallVec::new();
+        let mut open: SmallVec<[usize; 32]> = tree.root().into_iter().collect();
+        while let Some(index) = open.pop() {
+            let node = tree.node(index);
+            if self.shaft.misses_box(node.low, node.high) {
+                continue;
+            }
+            match tree.inside(index) {
+                Inside::Boxes(inner) => open.extend(inner),
+                Inside::Things(things) => {
+                    for occluder in things.iter().map(|thing| first + thing) {
+                        if self.is_aside(occluder) {
+                            continue;
+                        }
+                        if faces.len() == FEW {
+                            return None;
+                        }
+                        faces.push(occluder);
+                    }
+                }
+            }
+        }
+        Some(faces)
     }
 
     /// Whether some face of the occluder alone stands between every viewer and all of the sender.

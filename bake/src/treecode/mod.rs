@@ -13,6 +13,7 @@ mod descent;
 mod pieces;
 mod receivers;
 mod search;
+mod seen_meshes;
 mod terminal;
 mod viewers;
 
@@ -22,6 +23,7 @@ use descent::Descent;
 use equilux_formats::{Precision, Rows};
 use std::ops::Range;
 use std::time::Duration;
+pub(crate) use viewers::box_corners;
 
 /// How a block is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,17 +2,20 @@
 //!
 //! What is the same for all receivers is done once: the horizon cuts the sender, and the sender's plane tells which
 //! occluders stand before it. Then the receivers, a few lanes at a time, see how the sender lies to the pyramid that each
-//! occluder hides. Only where a pyramid cuts the sender, for that receiver alone, polygons are clipped.
+//! occluder hides. Only where a pyramid cuts the sender, for that receiver alone, polygons are clipped; and then meshes hide
+//! some of what is left.
 
 use super::candidates::Entry;
 use super::cones::{Cone, Cones, Lies, Planes, REST, lies, normal_of};
 use super::pieces::{Pieces, Scissors};
 use super::receivers::Receivers;
+use super::seen_meshes::{Curtains, SeenMeshes};
 use crate::form_factor::contour;
 use crate::form_factor::edges::Edges;
 use crate::form_factor::plain::IN_PLANE;
 use crate::form_factor::polygon::{Polygon, Side, clip};
 use crate::form_factor::wide::{LANES, Lane, STEEP, Vectors, contours, squared, towards, vectorised};
+use crate::occluders::Shape;
 use crate::outline::Outline;
 use crate::world::{Node, World};
 use equilux_formats::FaceId;
@@ -28,6 +31,7 @@ pub struct Evaluator<'a> {
     known: Vec<Option<Cone>>,
     /// Pyramids of what one sender's plane leaves of occluders.
     pieces: Cones,
+    meshes: SeenMeshes<'a>,
     /// The pyramids before the sender, and whose they are.
     before: Vec<Before>,
     chunk: Chunk,
@@ -72,6 +76,7 @@ impl<'a> Evaluator<'a> {
             whole: Cones::default(),
             known: vec![None; world.occluders.all.len()],
             pieces: Cones::default(),
+            meshes: SeenMeshes::new(world),
             before: vec![],
             chunk: Chunk::default(),
             clipper: Clipper::default(),
@@ -96,8 +101,8 @@ impl<'a> Evaluator<'a> {
             Side::Piece(piece) => piece,
         };
         self.find_before(receivers, sender, occluders);
-        let Self { whole, pieces, before, chunk, clipper, edges, .. } = self;
-        let facing = sender.side.map_or(DVec3::ZERO, |side| side.normal);
+        let Self { whole, pieces, meshes, before, chunk, clipper, edges, .. } = self;
+        let side = sender.side.expect("a sender with an outline is flat");
         let first = values.len();
         for (number, points) in receivers.points.lanes().iter().enumerate() {
             let planes_of = |before: &Before| match *before {
@@ -107,12 +112,17 @@ impl<'a> Evaluator<'a> {
             let planes: SmallVec<[&[Planes]; 16]> = before.iter().map(planes_of).collect();
             vectorised(
                 #[inline(always)]
-                || chunk.look(points, polygon, normal, facing, &planes),
+                || chunk.look(points, polygon, normal, side.normal, &planes),
             );
             let count = LANES.min(receivers.count() - (values.len() - first));
             for lane in 0..count {
                 values.push(chunk.values[lane]);
-                let seen = Seen { chunk, planes: &planes, lane, normal };
+                if chunk.values[lane] == 0.0 {
+                    continue;
+                }
+                let receiver = number * LANES + lane;
+                let curtains = meshes.curtains(receivers, receiver, || chunk.corners_of(lane), side);
+                let seen = Seen { chunk, planes: &planes, curtains, lane, normal };
                 clipper.add(seen, values, edges);
             }
         }
@@ -124,6 +134,7 @@ impl<'a> Evaluator<'a> {
     fn find_before(&mut self, receivers: &Receivers, sender: &Node, occluders: &[Entry]) {
         self.before.clear();
         self.pieces.clear();
+        self.meshes.clear();
         let side = sender.side.expect("a sender with an outline is flat");
         let corner = sender.polygon[0];
         let height = |p: DVec3| side.normal.dot(p - corner);
@@ -131,7 +142,7 @@ impl<'a> Evaluator<'a> {
         for entry in occluders {
             let Entry::Occluder(index) = *entry else { unreachable!("lists of terminals are opened") };
             let occluder = &self.world.occluders.all[index as usize];
-            let slack = IN_PLANE * (occluder.outline.size + (occluder.corners[0] - corner).length());
+            let slack = IN_PLANE * (occluder.diameter + (occluder.corners[0] - corner).length());
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for &p in &occluder.corners {
                 low = low.min(height(p));
@@ -140,23 +151,30 @@ impl<'a> Evaluator<'a> {
             if high <= slack {
                 continue;
             }
+            let outline = match &occluder.shape {
+                Shape::Face(outline) | Shape::Solid(outline) => outline,
+                Shape::Mesh(_) => {
+                    self.meshes.add(index);
+                    continue;
+                }
+            };
             if low >= -slack {
                 let whole = &mut self.whole;
                 let known = &mut self.known[index as usize];
-                let cone = known.get_or_insert_with(|| whole.add(&occluder.outline, lanes));
+                let cone = known.get_or_insert_with(|| whole.add(outline, lanes));
                 self.before.push(Before::Whole(*cone));
                 continue;
             }
-            let faces = || occluder.faces.iter().map(|&face| &self.world.faces[face as usize]);
-            let piece = if occluder.is_solid() {
-                occluder.outline.above(faces().map(|face| face.corners.as_slice()), height)
+            let piece = if !outline.thin {
+                let faces = occluder.faces.iter().map(|&face| &self.world.faces[face as usize]);
+                outline.above(faces.map(|face| face.corners.as_slice()), height)
             } else if self.world.coplanar(FaceId(occluder.faces[0]), side.face) {
                 continue;
             } else {
                 match clip(&occluder.corners, height) {
-                    Side::All => occluder.outline.clone(),
+                    Side::All => outline.clone(),
                     Side::None => continue,
-                    Side::Piece(piece) => Outline::of_face(&piece, occluder.outline.sides[0].normal),
+                    Side::Piece(piece) => Outline::of_face(&piece, outline.sides[0].normal),
                 }
             };
             self.before.push(Before::Piece(self.pieces.add(&piece, lanes)));
@@ -180,8 +198,8 @@ impl Chunk {
         for &corner in polygon {
             let to = towards(corner, points);
             let length2 = squared(&to);
-            for lane in 0..LANES {
-                reach2[lane] = if length2[lane] > reach2[lane] { length2[lane] } else { reach2[lane] };
+            for (reach2, length2) in reach2.iter_mut().zip(length2) {
+                *reach2 = if length2 > *reach2 { length2 } else { *reach2 };
             }
             self.corners.push(to);
         }
@@ -229,6 +247,7 @@ impl Chunk {
 struct Seen<'a> {
     chunk: &'a mut Chunk,
     planes: &'a [&'a [Planes]],
+    curtains: Curtains<'a>,
     lane: usize,
     normal: DVec3,
 }
@@ -242,11 +261,11 @@ struct Clipper {
 }
 
 impl Clipper {
-    /// Correct the last of `values`, which is the unoccluded form factor.
+    /// Correct the last of `values`, which is the unoccluded form factor, not zero.
     fn add(&mut self, seen: Seen, values: &mut [f64], edges: &mut Edges) {
-        let Seen { chunk, planes, lane, normal } = seen;
+        let Seen { chunk, planes, curtains, lane, normal } = seen;
         let place = values.len() - 1;
-        if values[place] == 0.0 || (chunk.cuts[lane].is_empty() && !chunk.plain[lane]) {
+        if chunk.cuts[lane].is_empty() && curtains.is_empty() && !chunk.plain[lane] {
             return;
         }
         let plain = chunk.plain[lane];
@@ -261,13 +280,15 @@ impl Clipper {
         if plain {
             values[place] = contour::form_factor(&polygon, normal);
         }
+        // The last bit stands for planes, too, that are none for this receiver.
         let cutting = |cut: &Cut| {
             let planes = planes[cut.before as usize];
-            bits(cut.planes, planes.len()).map(move |number| normal_of(&planes[number], lane))
+            let normals = bits(cut.planes, planes.len()).map(move |number| normal_of(&planes[number], lane));
+            normals.filter(|&normal| normal != DVec3::ZERO)
         };
         match chunk.cuts[lane].as_mut_slice() {
-            [] => {}
-            [cut] => {
+            [] if curtains.is_empty() => {}
+            [cut] if curtains.is_empty() => {
                 let hidden = self.scissors.intersect(&polygon, cutting(cut));
                 if !hidden.is_empty() {
                     sum(hidden, -1.0, values);
@@ -285,6 +306,7 @@ impl Clipper {
                     }
                     std::mem::swap(&mut self.pieces, &mut self.outside);
                 }
+                curtains.subtract_from(&mut self.pieces, &mut self.outside);
                 values[place] = 0.0;
                 for piece in self.pieces.iter() {
                     sum(piece, 1.0, values);

@@ -1,0 +1,101 @@
+//! The meshes before a sender as each receiver of a cluster sees them: made when first asked for, and kept for all the
+//! senders of the cluster.
+
+use super::pieces::Pieces;
+use super::receivers::Receivers;
+use crate::form_factor::polygon::Polygon;
+use crate::meshes::{Obstruction, SeenMesh, SeenPolygon};
+use crate::world::{Side, World};
+use equilux_formats::FaceId;
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// All meshes, as far as they were asked for.
+pub struct SeenMeshes<'a> {
+    world: &'a World,
+    /// By occluder and receiver; an occluder that nobody asked for has no receivers.
+    known: Vec<Vec<Option<Box<SeenMesh<'a>>>>>,
+    /// The occluders before the sender.
+    before: Vec<u32>,
+}
+
+/// What of them may hide something of one sender from one receiver.
+pub struct Curtains<'s> {
+    world: &'s World,
+    side: Side,
+    meshes: SmallVec<[&'s SeenMesh<'s>; 8]>,
+}
+
+impl<'a> SeenMeshes<'a> {
+    /// Seen by nobody.
+    pub fn new(world: &'a World) -> Self {
+        Self { world, known: vec![], before: vec![] }
+    }
+
+    /// Another sender: nothing stands before it yet.
+    pub fn clear(&mut self) {
+        self.before.clear();
+    }
+
+    /// An occluder, a mesh, stands before the sender.
+    pub fn add(&mut self, occluder: u32) {
+        self.before.push(occluder);
+    }
+
+    /// What may hide something of a sender from a receiver, by its number. `corners` are those of the sender relative to
+    /// the receiver's point, above its horizon; the `side` is what it lies on.
+    pub fn curtains(
+        &mut self,
+        receivers: &Receivers,
+        receiver: usize,
+        corners: impl FnOnce() -> Polygon,
+        side: Side,
+    ) -> Curtains<'_> {
+        let mut curtains = Curtains { world: self.world, side, meshes: SmallVec::new() };
+        if !self.before.is_empty() {
+            self.make(receivers, receiver);
+            let sender = SeenPolygon::new(corners(), side.normal, side.face.0);
+            let seen = self.before.iter().filter_map(|&o| self.known[o as usize][receiver].as_deref());
+            curtains.meshes.extend(seen.filter(|seen| seen.span.meets(&sender.span)));
+        }
+        curtains
+    }
+
+    /// See to it that all before the sender are known.
+    fn make(&mut self, receivers: &Receivers, receiver: usize) {
+        self.known.resize_with(self.world.occluders.all.len(), Vec::new);
+        for &occluder in &self.before {
+            let by_receiver = &mut self.known[occluder as usize];
+            by_receiver.resize_with(receivers.count(), || None);
+            by_receiver[receiver]
+                .get_or_insert_with(|| Box::new(seen(self.world, occluder, receivers, receiver)));
+        }
+    }
+}
+
+fn seen<'a>(world: &'a World, occluder: u32, receivers: &Receivers, receiver: usize) -> SeenMesh<'a> {
+    let mesh = world.occluders.mesh(occluder).expect("only meshes are added");
+    let own = receivers.viewers.flat.as_ref().expect("receivers lie on one face").face;
+    let point = receivers.points.points()[receiver];
+    mesh.seen_from(point, receivers.points.normal(), |face| world.coplanar(own, FaceId(face)))
+}
+
+impl Curtains<'_> {
+    /// Whether nothing is hidden.
+    pub fn is_empty(&self) -> bool {
+        self.meshes.is_empty()
+    }
+
+    /// Take what they hide away from `pieces` of the sender; what was in `spare` is lost.
+    pub fn subtract_from(&self, pieces: &mut Pieces, spare: &mut Pieces) {
+        for seen in &self.meshes {
+            spare.clear();
+            for piece in pieces.iter() {
+                let piece = SeenPolygon::new(Polygon::from_slice(piece), self.side.normal, self.side.face.0);
+                let coplanar = |face| self.world.coplanar(self.side.face, FaceId(face));
+                Obstruction::new(seen, &piece, coplanar).subtract(&mut |open: &[DVec3]| spare.push(open));
+            }
+            std::mem::swap(pieces, spare);
+        }
+    }
+}
