@@ -3,3 +3,4 @@
 mod closed;
 mod curved;
 mod from_a_point;
+mod touching;

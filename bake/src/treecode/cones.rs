@@ -83,7 +83,8 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
         let length2 = squared(&to);
         let mut look = [0.0; LANES];
         for lane in 0..LANES {
-            let along = side.normal.x * to[0][lane] + side.normal.y * to[1][lane] + side.normal.z * to[2][lane];
+            let along =
+                side.normal.x * to[0][lane] + side.normal.y * to[1][lane] + side.normal.z * to[2][lane];
             let reach = length2[lane].sqrt() + outline.size;
             look[lane] = if along < -IN_PLANE * reach { 1.0 } else { 0.0 };
         }
@@ -97,15 +98,17 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
             continue;
         }
         let (a, ab) = (towards(edge.ends[0], points), edge.ends[1] - edge.ends[0]);
+        let far2 = squared(&a);
         let mut plane = [[0.0; LANES]; 4];
         for lane in 0..LANES {
             let sign = right[lane] - left[lane];
             let x = (a[1][lane] * ab.z - a[2][lane] * ab.y) * sign;
             let y = (a[2][lane] * ab.x - a[0][lane] * ab.z) * sign;
             let z = (a[0][lane] * ab.y - a[1][lane] * ab.x) * sign;
-            // An edge that is seen end-on, or is no silhouette, has no length here.
+            // An edge that is seen end-on, or is no silhouette, has no length here; nor has one between corners that
+            // cutting left the same but for rounding, whose direction means nothing.
             let length = (x * x + y * y + z * z).sqrt();
-            let none = length == 0.0;
+            let none = length <= IN_PLANE * far2[lane];
             let inverse = if none { 0.0 } else { 1.0 / length };
             plane[0][lane] = x * inverse;
             plane[1][lane] = y * inverse;

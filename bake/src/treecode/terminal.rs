@@ -203,9 +203,7 @@ impl Chunk {
             }
             self.corners.push(to);
         }
-        for lane in 0..LANES {
-            self.slack[lane] = IN_PLANE * reach2[lane].sqrt();
-        }
+        self.slack = reach2.map(|reach2| IN_PLANE * reach2.sqrt());
         // Receivers behind the sender's plane, or in it, see nothing of it.
         let mut dark = [false; LANES];
         let to = &self.corners[0];
