@@ -34,6 +34,9 @@ enum Place {
 /// size; if not, its faces are asked one by one.
 const CLEAR: f64 = 1e-6;
 
+/// Relative error of a few operations.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     /// `coplanar` tells which faces, as numbered outside, lie in the sender's plane: those hide nothing of it.
     pub fn new(seen: &'a SeenMesh<'a>, sender: &'a SeenPolygon, coplanar: C) -> Self {
@@ -153,7 +156,9 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     fn is_before(&self, face: usize, sight: &Sight) -> bool {
         let distance = self.seen.distance(face, sight.along);
         let height = self.sender.height(sight.along * distance);
-        if height.abs() > self.slack(distance) {
+        // A face that is seen nearly edge-on is met at a distance that rounding shifts the more.
+        let grazing = self.seen.mesh.normal(face).dot(sight.along).abs();
+        if height.abs() > self.slack(distance) + ROUNDING * distance / grazing {
             height > 0.0
         } else {
             sight.rises(self.seen.mesh.normal(face), self.sender.normal)
