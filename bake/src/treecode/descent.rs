@@ -60,7 +60,8 @@ impl<'a> Descent<'a> {
             return Found::default();
         }
         let viewers = Viewers::new(self.request.world, &self.request.world.elements[group.elements.clone()]);
-        let narrowed = (viewers.diameter <= SMALLER * size).then(|| frontier.narrowed(self.request, &viewers));
+        let narrowed =
+            (viewers.diameter <= SMALLER * size).then(|| frontier.narrowed(self.request, &viewers));
         let (frontier, size) = match &narrowed {
             Some(narrowed) => (narrowed, viewers.diameter),
             None => (frontier, size),

@@ -102,4 +102,3 @@ pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
     let block = Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
     Some(Timed { block, row_sums: found.sums, time: found.time })
 }
-

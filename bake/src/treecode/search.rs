@@ -1,10 +1,10 @@
 //! One flat cluster of receivers looking for its senders.
 
-use super::{MISSED, Request};
 use super::candidates::{Candidates, Verdict};
 use super::descent::Frontier;
 use super::receivers::Receivers;
 use super::terminal::Evaluator;
+use super::{MISSED, Request};
 use crate::world::Node;
 use equilux_formats::RowGroup;
 use std::collections::BinaryHeap;
@@ -67,7 +67,11 @@ enum Taken {
 
 impl<'a> Search<'a> {
     /// The rows of some elements on one side of one face, and their sums.
-    pub fn rows(request: &'a Request<'a>, elements: Range<usize>, frontier: &Frontier<'a>) -> (RowGroup, Vec<f64>) {
+    pub fn rows(
+        request: &'a Request<'a>,
+        elements: Range<usize>,
+        frontier: &Frontier<'a>,
+    ) -> (RowGroup, Vec<f64>) {
         let own = request.world.elements_of(request.receivers).start;
         let missing = match request.already {
             Some(seen) => elements.clone().map(|i| 1.0 - seen[i - own]).collect(),
