@@ -121,8 +121,8 @@ impl Shaft {
             }
         }
         let mut outside = false;
-        for k in 0..PLANES {
-            outside |= nearest[k] >= self.offsets[k];
+        for (nearest, offset) in nearest.iter().zip(&self.offsets) {
+            outside |= nearest >= offset;
         }
         outside
     }

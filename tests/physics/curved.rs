@@ -52,9 +52,9 @@ fn worst_entry(world: &World, rows: &[Timed], count: usize) -> f64 {
         for receiver in elements.clone().step_by(every) {
             let mut row = vec![0.0; world.nodes.len()];
             timed.block.row(receiver - elements.start).for_each(|(column, value)| row[column] = value);
-            for node in 0..world.nodes.len() {
+            for (node, value) in row.into_iter().enumerate() {
                 let Some(sender) = world.element_of(node) else { continue };
-                worst = worst.max((row[node] - plain::form_factor(world, receiver, sender)).abs());
+                worst = worst.max((value - plain::form_factor(world, receiver, sender)).abs());
             }
         }
     }
