@@ -59,17 +59,11 @@ pub struct Together {
     pub first: u32,
 }
 
-/// Convex solids of more faces hide as meshes do: the edges of their silhouettes are too many to look at each. Of 80 faces
-/// a row took half the time of meshes, of 1280 two and a half times as long.
-const SOLID: usize = 256;
-
 /// Connected faces fewer than these hide one by one: a silhouette would hardly be shorter than their edges.
 const MESH: usize = 24;
 
-/// Faces hide together as a mesh where most edges bend by less than this angle's cosine, 45°, and all of them together by
-/// more. What is bent more at its edges, such as a building's shell, has few, large faces, of which one alone can hide
-/// whole clusters from each other: found sooner. What is nearly flat hides little: a row of a room with a wall of 512
-/// triangles took a fifth longer together.
+/// Faces hide together as a mesh where most edges bend by less than this angle's cosine, 45°. What is bent more, such as
+/// a building's shell, has few, large faces, of which one alone can hide whole clusters from each other: found sooner.
 const BEND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Occluders {
@@ -82,12 +76,12 @@ impl Occluders {
             all.push(occluder);
         };
         for group in connected(faces) {
-            match convex_solid(&group, faces) {
-                Some(solid) if group.len() <= SOLID => add(solid),
-                None if !is_curved(&group, faces) => {
-                    group.into_iter().for_each(|face| add(Occluder::face(face, &faces[face as usize])));
-                }
-                _ => add(Occluder::mesh(group, faces)),
+            if let Some(solid) = convex_solid(&group, faces) {
+                add(solid);
+            } else if is_curved(&group, faces) {
+                add(Occluder::mesh(group, faces));
+            } else {
+                group.into_iter().for_each(|face| add(Occluder::face(face, &faces[face as usize])));
             }
         }
         let tree = tree(&all);
@@ -185,10 +179,6 @@ fn find(group: &mut [usize], mut i: usize) -> usize {
 /// Whether these connected faces are a tessellated curved surface: see [`BEND`]. Edges that do not bend tell nothing.
 fn is_curved(group: &[u32], faces: &[Face]) -> bool {
     if group.len() < MESH {
-        return false;
-    }
-    let first = faces[group[0] as usize].normal;
-    if group.iter().all(|&face| faces[face as usize].normal.dot(first) > BEND) {
         return false;
     }
     let mut first_at: HashMap<(Bits, Bits), &Face> = HashMap::new();
