@@ -1,14 +1,15 @@
 //! Files that are there whole or not at all. In goes a path and a closure that writes; out comes the file under its
 //! name, or the old one untouched.
 
-use equilux_formats::{Error, Result, temporary_beside};
-use std::io::{self, BufWriter, Write};
+use equilux_formats::{Error, Result, remove_left_over_beside, write_whole};
+use std::io::{self, Write};
 use std::path::Path;
 
 /// Puts what `fill` writes at `path` in one step. Fails when the folder cannot be written or is full, and then leaves
-/// nothing behind.
+/// nothing behind. Takes away what a killed run left half-written beside it.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
-    try_write(path, fill).map_err(|error| {
+    remove_left_over_beside(path);
+    write_whole(path, fill).map_err(|error| {
         Error::new(
             path,
             format!("could not be written ({error})"),
@@ -16,16 +17,6 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
             "make room or choose another output folder",
         )
     })
-}
-
-fn try_write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let mut file = temporary_beside(path)?;
-    let mut buffered = BufWriter::new(&mut file);
-    fill(&mut buffered)?;
-    buffered.flush()?;
-    drop(buffered);
-    file.persist(path)?;
-    Ok(())
 }
 
 #[cfg(test)]

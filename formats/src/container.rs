@@ -9,7 +9,7 @@ mod reader;
 mod writer;
 
 pub use reader::Reader;
-pub use writer::{Writer, temporary_beside};
+pub use writer::Writer;
 
 use crate::fingerprint::Manifest;
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,9 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// All kinds.
+    pub(crate) const ALL: [Self; 4] = [Self::Part, Self::Light, Self::Coupling, Self::Manifest];
+
     /// The four bytes in the header.
     fn code(self) -> [u8; 4] {
         match self {

@@ -1,21 +1,39 @@
 //! The cache folder: what was baked, by the key of what it was made from, and what each thing was last made from.
 //!
-//! Processes may share the folder without locks: files appear whole by renaming, and equal keys mean equal content,
-//! so it does not matter who writes last. Any file may be removed at any time.
+//! Processes may share the folder: files appear whole by renaming, equal keys mean equal content, so it does not matter
+//! who writes last, and turns keep two from making the same thing at once. Any file may be removed at any time.
+
+mod sweep;
+mod turn;
+
+pub use sweep::{Swept, Tally};
+pub use turn::Turn;
 
 use crate::container::{Kind, Reader, Writer};
 use crate::error::{Error, Result};
 use crate::fingerprint::{Content, Digest, Key, Manifest};
 use crate::stored::Stored;
+use crate::whole_file::remove_left_over;
+use std::collections::HashSet;
+use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
 
 /// A cache folder that can be written to.
 #[derive(Debug, Clone)]
 pub struct Store {
     folder: PathBuf,
-    /// What was found damaged since the folder was opened; clones share it.
-    damages: Arc<Mutex<Vec<Error>>>,
+    /// Clones share it.
+    log: Arc<Mutex<Log>>,
+}
+
+/// What happened since the folder was opened.
+#[derive(Debug, Default)]
+struct Log {
+    damages: Vec<Error>,
+    /// Files that were read or written.
+    used: HashSet<PathBuf>,
 }
 
 /// What the cache has under a key.
@@ -30,7 +48,7 @@ pub enum Lookup<T> {
 }
 
 impl Store {
-    /// Opens the folder, and makes it if it is not there.
+    /// Opens the folder, and makes it if it is not there. Removes what killed processes left half-written.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self> {
         let folder = folder.as_ref();
         std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder)).map_err(|error| {
@@ -41,7 +59,8 @@ impl Store {
                 "choose another with --cache DIR",
             )
         })?;
-        Ok(Self { folder: folder.into(), damages: Arc::default() })
+        remove_left_over(folder);
+        Ok(Self { folder: folder.into(), log: Arc::default() })
     }
 
     /// Where a `kind` of file with this key lies, or would lie.
@@ -56,9 +75,12 @@ impl Store {
             return Lookup::Missing;
         }
         match read(&path, key) {
-            Ok(found) => Lookup::Found(found),
+            Ok(found) => {
+                self.note_use(path);
+                Lookup::Found(found)
+            }
             Err(error) => {
-                self.damages.lock().unwrap_or_else(PoisonError::into_inner).push(error.clone());
+                self.note_damage(&error);
                 Lookup::Damaged(error)
             }
         }
@@ -66,12 +88,15 @@ impl Store {
 
     /// What was found damaged since the last call, in the order in which it was found, so that a person hears of it.
     pub fn take_damages(&self) -> Vec<Error> {
-        std::mem::take(&mut *self.damages.lock().unwrap_or_else(PoisonError::into_inner))
+        std::mem::take(&mut self.log().damages)
     }
 
     /// Keeps `value`, which was made from what `manifest` lists, under the manifest's key.
     pub fn save<T: Stored>(&self, manifest: &Manifest, value: &T) -> Result<()> {
-        value.write(manifest).write_to(&self.path(T::KIND, manifest.key()))
+        let path = self.path(T::KIND, manifest.key());
+        value.write(manifest).write_to(&path)?;
+        self.note_use(path);
+        Ok(())
     }
 
     /// What the thing called `name` was last made from, if that is known.
@@ -82,11 +107,35 @@ impl Store {
 
     /// Notes what the thing called `name` was made from, in place of what was noted before.
     pub fn remember(&self, name: &str, manifest: &Manifest) -> Result<()> {
-        Writer::new(Kind::Manifest, manifest, &()).write_to(&self.manifest_path(name))
+        let path = self.manifest_path(name);
+        if self.last_manifest(name).as_ref() != Some(manifest) {
+            Writer::new(Kind::Manifest, manifest, &()).write_to(&path)?;
+        }
+        self.note_use(path);
+        Ok(())
     }
 
     fn manifest_path(&self, name: &str) -> PathBuf {
         self.path(Kind::Manifest, Content::new().bytes(name).digest())
+    }
+
+    /// A file's time is when it was last used: sweeps go by it.
+    fn note_use(&self, path: PathBuf) {
+        // In a cache of somebody else's the times stay as they are, and nothing but the order of sweeps depends on them.
+        let _ = File::options().append(true).open(&path).and_then(|f| f.set_modified(SystemTime::now()));
+        self.log().used.insert(path);
+    }
+
+    /// A file that is looked at twice is told of once.
+    fn note_damage(&self, error: &Error) {
+        let damages = &mut self.log().damages;
+        if damages.iter().all(|known| known.file != error.file) {
+            damages.push(error.clone());
+        }
+    }
+
+    fn log(&self) -> MutexGuard<'_, Log> {
+        self.log.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

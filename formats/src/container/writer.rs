@@ -3,8 +3,9 @@
 use super::{ArrayEntry, Index, Kind, Number, checksum, frame, header};
 use crate::error::{Error, Result};
 use crate::fingerprint::Manifest;
+use crate::whole_file::write_whole;
 use serde::Serialize;
-use std::io::{self, Write};
+use std::io;
 use std::path::Path;
 
 /// A file that is being put together in memory.
@@ -56,22 +57,11 @@ impl Writer {
         messages.extend(&self.meta);
         let header = header(self.kind.code(), messages.len() as u64);
 
-        let mut file = temporary_beside(path)?;
-        file.write_all(&header)?;
-        file.write_all(&checksum(&header, &messages))?;
-        file.write_all(&messages)?;
-        file.write_all(&self.frames)?;
-        file.persist(path)?;
-        Ok(())
+        write_whole(path, |file| {
+            file.write_all(&header)?;
+            file.write_all(&checksum(&header, &messages))?;
+            file.write_all(&messages)?;
+            file.write_all(&self.frames)
+        })
     }
-}
-
-/// A temporary file in the folder of `path` that others may read once it has its name, as the umask allows. Dropped before
-/// that, it is gone. Fails as the file system does.
-pub fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".").suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new(".")))
 }
