@@ -6,13 +6,11 @@
 use crate::hull::intruders;
 use crate::placed::Placed;
 use equilux_bake::cached::{Origin, cached, foreseen};
+use equilux_bake::keys::{CORRECTED, COUPLING, placed_manifest};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::{KERNEL_VERSION, light_manifest, local_equilibrium};
+use equilux_bake::oven::{light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Request, Resolution, block};
-use equilux_formats::{
-    BakedLight, Content, Digest, Factors, LocalEquilibrium, Manifest, Result, Rows, Store,
-};
-use glam::DAffine3;
+use equilux_formats::{BakedLight, Digest, Factors, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
 use std::path::Path;
 use std::time::Duration;
 
@@ -51,10 +49,6 @@ pub struct Foreseen {
     /// The origin of the coupling.
     pub coupling: Origin,
 }
-
-/// What the blocks are called in manifests and in the cache.
-const COUPLING: &str = "coupling";
-const CORRECTED: &str = "corrected self block";
 
 impl Coupled {
     /// The block that instance's own light goes through.
@@ -142,7 +136,8 @@ impl Coupler<'_> {
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let part = &self.placed.part_of(instance).part;
         let manifest = light_manifest(key, &part.optics, part.local.solver);
-        let (light, _) = cached(self.store, &self.name(instance, "corrected light"), &manifest, || {
+        let name = self.name(instance, "corrected light");
+        let (light, _) = cached(self.store, &name, &manifest, self.monitor, || {
             let clusters = &part.geometry.clusters;
             let local = local_equilibrium(&self_block, clusters, &part.optics, part.local.solver);
             Ok(Some(BakedLight { optics: part.optics.clone(), local }))
@@ -156,7 +151,7 @@ impl Coupler<'_> {
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
         let mut time = Duration::ZERO;
-        let found = cached(self.store, &name, &manifest, || {
+        let found = cached(self.store, &name, &manifest, self.monitor, || {
             let receivers = self.placed.world.elements_of(instance).len();
             self.monitor.begin(format!("{what} of {}", self.placed.instances[instance].name), receivers);
             Ok(block(request, self.monitor).map(|timed| {
@@ -171,26 +166,8 @@ impl Coupler<'_> {
         format!("{what} of instance {instance} in {}", self.file.display())
     }
 
-    /// Everything that the block depends on: the part itself, and every other instance, its part and where it stands
-    /// as seen from this one.
     fn manifest(&self, instance: usize, what: &str) -> Manifest {
-        let inverse = self.placed.instances[instance].placement.inverse();
-        let mut manifest = Manifest::new()
-            .setting("block", what)
-            .setting("kernel", KERNEL_VERSION)
-            .setting("resolution", self.resolution)
-            .digest("the part", self.placed.part_of(instance).key);
-        for (number, other) in self.placed.instances.iter().enumerate().filter(|&(n, _)| n != instance) {
-            let relative = inverse * other.placement;
-            let seen = Content::new()
-                .bytes(self.placed.part_of(number).key.to_string())
-                .f64s(&placement_numbers(relative));
-            manifest = manifest.digest(format!("instance {number} ({})", other.name), seen.digest());
-        }
-        manifest
+        let part_keys: Vec<Key> = self.placed.parts.iter().map(|part| part.key).collect();
+        placed_manifest(&self.placed.instances, &part_keys, self.resolution, instance, what)
     }
-}
-
-fn placement_numbers(placement: DAffine3) -> [f64; 12] {
-    placement.to_cols_array()
 }

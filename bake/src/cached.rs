@@ -1,6 +1,8 @@
 //! Take from the cache, or compute and keep; and say which and why, from the same manifest that makes the key.
 
-use equilux_formats::{Lookup, Manifest, Result, Store, Stored};
+use crate::monitor::Monitor;
+use equilux_formats::{Lookup, Manifest, Result, Store, Stored, Turn};
+use std::time::Duration;
 
 /// Where a result came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,23 +46,48 @@ fn look_up<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> std::re
     }
 }
 
-/// The value that `manifest` describes; `name` is what its older versions were called. `compute` returns none if it
-/// was stopped, and then so does this.
+/// How often it is asked whether another process is done.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// The value that `manifest` describes; `name` is what its older versions were called. Of all processes that share the
+/// cache one computes it, the others wait for that one. `compute` returns none if it was stopped, and then so does this.
+/// It must not ask for anything cached itself: see [`Store::try_turn`].
 pub fn cached<T: Stored>(
     store: &Store,
     name: &str,
     manifest: &Manifest,
+    monitor: &Monitor,
     compute: impl FnOnce() -> Result<Option<T>>,
 ) -> Result<Option<(T, Origin)>> {
-    let reason = match look_up(store, name, manifest) {
-        Ok(value) => {
-            store.remember(name, manifest)?;
-            return Ok(Some((value, Origin::Reused)));
+    let mut found = look_up(store, name, manifest);
+    let mut _turn = None;
+    if found.is_err() {
+        _turn = wait_for_turn(store, name, manifest, monitor);
+        // Another process may have made it meanwhile.
+        found = look_up(store, name, manifest);
+    }
+    let (value, origin) = match found {
+        Ok(value) => (value, Origin::Reused),
+        Err(reason) => {
+            let Some(value) = compute()? else { return Ok(None) };
+            store.save(manifest, &value)?;
+            (value, Origin::Computed(reason))
         }
-        Err(reason) => reason,
     };
-    let Some(value) = compute()? else { return Ok(None) };
-    store.save(manifest, &value)?;
     store.remember(name, manifest)?;
-    Ok(Some((value, Origin::Computed(reason))))
+    Ok(Some((value, origin)))
+}
+
+/// The turn to compute; none if the monitor was stopped before another process was done.
+fn wait_for_turn(store: &Store, name: &str, manifest: &Manifest, monitor: &Monitor) -> Option<Turn> {
+    let key = manifest.key();
+    let mut turn = store.try_turn(&key);
+    if turn.is_none() {
+        monitor.begin(format!("another process computes {name}: waiting for it"), 1);
+    }
+    while turn.is_none() && !monitor.stopped() {
+        std::thread::sleep(PATIENCE);
+        turn = store.try_turn(&key);
+    }
+    turn
 }

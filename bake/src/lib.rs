@@ -13,6 +13,7 @@ pub mod elements;
 pub mod equilibrium;
 pub mod form_factor;
 pub mod gltf_import;
+pub mod keys;
 pub mod merge;
 pub mod meshes;
 pub mod monitor;

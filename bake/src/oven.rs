@@ -52,7 +52,7 @@ impl Oven<'_> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
         let mut form_factor_time = Duration::ZERO;
-        let found = cached(self.store, &self.name(part, "form factors"), &manifest, || {
+        let found = cached(self.store, &self.name(part, "form factors"), &manifest, self.monitor, || {
             self.monitor.begin(format!("form factors of {}", part.name), part.geometry.elements.len());
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
             let request = Request {
@@ -71,7 +71,8 @@ impl Oven<'_> {
         let Some((geometry, form_factors)) = found else { return Ok(None) };
         let start = Instant::now();
         let manifest = light_manifest(key.into(), &part.optics, part.solver);
-        let (light, light_origin) = cached(self.store, &self.name(part, "light"), &manifest, || {
+        let name = self.name(part, "light");
+        let (light, light_origin) = cached(self.store, &name, &manifest, self.monitor, || {
             self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
             self.refuse_endless_light(part, &geometry)?;
             Ok(Some(BakedLight {
@@ -139,7 +140,7 @@ pub fn local_equilibrium(
 }
 
 /// Everything that the part's own form factors depend on, and nothing else.
-fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifest {
+pub fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifest {
     Manifest::new()
         .setting("kernel", KERNEL_VERSION)
         .setting("element size", part.element_size)

@@ -2,8 +2,8 @@
 //! and too little room.
 
 use equilux_formats::{
-    BakedLight, Content, Digest, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rows,
-    Store, Swept, Tally, remove_left_over_beside, write_whole,
+    BakedLight, Content, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rows, Store,
+    Swept, Tally, remove_left_over_beside, write_whole,
 };
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -173,8 +173,7 @@ fn keeping_only_some_keys_drops_all_else_that_a_store_made() {
     for foreign in ["notes.txt", "part-of-a-book.eqx"] {
         fs::write(folder.path().join(foreign), "mine").unwrap();
     }
-    let key: Digest = manifest(1).key().into();
-    let swept = store.keep_only(&HashSet::from([key])).unwrap();
+    let swept = store.keep_only(&HashSet::from([manifest(1).key()])).unwrap();
     assert_eq!(
         (swept.dropped.files, swept.kept.files),
         (4, 3),

@@ -6,7 +6,7 @@
 use super::Store;
 use crate::container::{Kind, Reader};
 use crate::error::{Error, Result};
-use crate::fingerprint::Digest;
+use crate::fingerprint::{Digest, Key};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::io::ErrorKind;
@@ -44,7 +44,8 @@ struct Cached {
 impl Store {
     /// Drops every file that is not under one of these keys. Of what was last made from what, only that is kept which
     /// led to one of the keys.
-    pub fn keep_only(&self, keys: &HashSet<Digest>) -> Result<Swept> {
+    pub fn keep_only(&self, keys: &HashSet<Key>) -> Result<Swept> {
+        let keys: HashSet<Digest> = keys.iter().map(|&key| key.into()).collect();
         self.sweep(|files| {
             let needed = |file: &Cached| file.key().is_some_and(|key| keys.contains(&key));
             files.into_iter().partition(needed)
