@@ -4,8 +4,9 @@ use crate::monitor::Monitor;
 use crate::oven::{Baked, Oven};
 use crate::prepare::{Preparation, prepare};
 use crate::{gltf_import::import_scene, prepare::PreparedPart};
-use equilux_formats::{Error, Result, Rows, Store};
+use equilux_formats::{Error, Result, Rows, Store, Swept};
 use serde::Serialize;
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use walkdir::WalkDir;
@@ -17,6 +18,8 @@ pub struct Batch {
     pub files: Vec<FileOutcome>,
     /// Wall time.
     pub seconds: f64,
+    /// What was dropped from the cache to keep within its limit, if it has one.
+    pub swept: Option<Swept>,
 }
 
 /// What became of one file.
@@ -30,6 +33,9 @@ pub struct FileOutcome {
     pub notes: Vec<String>,
     /// Why the file could not be baked.
     pub error: Option<String>,
+    /// Every file that was read for it.
+    #[serde(skip)]
+    pub sources: Vec<PathBuf>,
 }
 
 /// What became of one part.
@@ -74,6 +80,17 @@ impl Batch {
     pub fn baked(&self) -> usize {
         self.files.iter().flat_map(|file| &file.parts).filter(|part| part.baked).count()
     }
+
+    /// Whether a file could not be baked.
+    pub fn failed(&self) -> bool {
+        self.files.iter().any(|file| file.error.is_some())
+    }
+
+    /// Every file that was read, once.
+    pub fn sources(&self) -> Vec<PathBuf> {
+        let mut known = HashSet::new();
+        self.files.iter().flat_map(|file| &file.sources).filter(|path| known.insert(*path)).cloned().collect()
+    }
 }
 
 /// The glTF files among `inputs` and in the folders among them, sorted within each folder.
@@ -114,14 +131,19 @@ pub fn bake_files(files: &[PathBuf], wanted: &Preparation, store: &Store, monito
     let start = Instant::now();
     let mut outcomes = Vec::new();
     for file in files {
-        let mut outcome =
-            FileOutcome { file: file.display().to_string(), parts: vec![], notes: vec![], error: None };
+        let mut outcome = FileOutcome {
+            file: file.display().to_string(),
+            parts: vec![],
+            notes: vec![],
+            error: None,
+            sources: vec![],
+        };
         if let Err(error) = bake_file(file, wanted, store, monitor, &mut outcome) {
             outcome.error = Some(error.to_string());
         }
         outcomes.push(outcome);
     }
-    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64() }
+    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64(), swept: None }
 }
 
 fn bake_file(
@@ -133,6 +155,7 @@ fn bake_file(
 ) -> Result<()> {
     let scene = import_scene(file)?;
     outcome.notes.clone_from(&scene.notes);
+    outcome.sources.clone_from(&scene.sources);
     let oven = Oven { store, file, resolution: wanted.resolution, monitor };
     for part in &prepare(&scene, wanted)?.parts {
         let start = Instant::now();

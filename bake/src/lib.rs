@@ -9,6 +9,7 @@ pub mod cached;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod clusters;
+pub mod depfile;
 pub mod elements;
 pub mod equilibrium;
 pub mod form_factor;
@@ -23,6 +24,7 @@ pub mod oven;
 pub mod planes;
 pub mod prepare;
 pub mod shaft;
+pub mod stamp;
 pub mod treecode;
 pub mod visibility;
 pub mod world;

@@ -3,12 +3,19 @@
 pub mod options;
 pub mod progress;
 
+mod size;
+
 use crate::batch::{Batch, PartOutcome, bake_files, find_scenes};
+use crate::keys::drop_unused;
 use crate::monitor::Monitor;
+use crate::{depfile, stamp};
 use clap::Parser;
-use equilux_formats::Store;
+use equilux_formats::{Store, Swept};
+use indicatif::DecimalBytes;
 use options::SceneOptions;
-use std::path::PathBuf;
+use serde::Serialize;
+use size::count;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Turn glTF parts into exact form factors and their local light equilibrium, kept in a cache.
@@ -23,13 +30,25 @@ struct Arguments {
     /// Say in a sentence for every part why it was or was not baked
     #[arg(long)]
     explain: bool,
+    /// Touch this file when everything is baked, for a build tool to watch
+    #[arg(long, value_name = "FILE")]
+    stamp: Option<PathBuf>,
+    /// Write for Make, Ninja or CMake which files were read; the target in it is the stamp
+    #[arg(long, value_name = "FILE", requires = "stamp")]
+    depfile: Option<PathBuf>,
+    /// Bake nothing; drop from the cache what these scenes, baked or assembled with these options, do not use. Scenes
+    /// with other options lose theirs
+    #[arg(long, conflicts_with_all = ["explain", "stamp", "cache_limit"])]
+    gc: bool,
 }
 
 const EXAMPLES: &str = "\
 Examples:
   bake scenes/house                     every part file of a level
   bake hall.glb --element-size 0.25     elements of at most a quarter of a metre
-  bake scenes/shadow/shadow.glb --bisect 2 --explain";
+  bake scenes/shadow/shadow.glb --bisect 2 --explain
+  bake scenes/house --stamp house.stamp --depfile house.d
+  bake scenes/house scenes/cornell --gc --cache .equilux";
 
 /// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
 pub fn main() -> ExitCode {
@@ -39,9 +58,9 @@ pub fn main() -> ExitCode {
     let outcome = run(&arguments, &monitor);
     progress.finish();
     match outcome {
-        Ok(batch) => {
-            print(&arguments, &batch);
-            ExitCode::from(u8::from(batch.files.iter().any(|file| file.error.is_some())))
+        Ok(done) => {
+            print(&arguments, &done);
+            ExitCode::from(u8::from(matches!(&done, Done::Baked(batch) if batch.failed())))
         }
         Err(error) => {
             eprintln!("error: {error:#}");
@@ -50,26 +69,60 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Batch> {
-    arguments.options.set_threads()?;
-    let files = find_scenes(&arguments.inputs)?;
-    let store = Store::open(&arguments.options.cache)?;
-    Ok(bake_files(&files, &arguments.options.preparation(), &store, monitor))
+/// What was asked for and done.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Done {
+    Baked(Batch),
+    Swept(Swept),
 }
 
-fn print(arguments: &Arguments, batch: &Batch) {
+fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Done> {
+    let options = &arguments.options;
+    options.set_threads()?;
+    let files = find_scenes(&arguments.inputs)?;
+    [&arguments.stamp, &arguments.depfile].into_iter().flatten().try_for_each(|path| stamp::check(path))?;
+    let store = Store::open(&options.cache)?;
+    if arguments.gc {
+        return Ok(Done::Swept(drop_unused(&files, &options.preparation(), &store)?));
+    }
+    let mut batch = bake_files(&files, &options.preparation(), &store, monitor);
+    batch.swept = options.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
+    if let Some(stamp) = arguments.stamp.as_ref().filter(|_| !batch.failed()) {
+        if let Some(path) = &arguments.depfile {
+            depfile::write(path, stamp, &batch.sources())?;
+        }
+        stamp::touch(stamp)?;
+    }
+    Ok(Done::Baked(batch))
+}
+
+fn print(arguments: &Arguments, done: &Done) {
+    if let Done::Baked(batch) = done {
+        print_problems(batch, !arguments.options.json);
+    }
+    match done {
+        done if arguments.options.json => {
+            println!("{}", serde_json::to_string(done).expect("a batch is plain data"));
+        }
+        Done::Baked(batch) => print_batch(arguments, batch),
+        Done::Swept(swept) => println!("{}", swept_line(&arguments.options.cache, swept)),
+    }
+}
+
+fn print_problems(batch: &Batch, with_notes: bool) {
     for file in &batch.files {
         if let Some(error) = &file.error {
             eprintln!("error: {error}");
         }
-        if !arguments.options.json {
+        if with_notes {
             file.notes.iter().for_each(|note| eprintln!("note: {note}"));
         }
     }
-    if arguments.options.json {
-        println!("{}", serde_json::to_string(batch).expect("a batch is plain data"));
-        return;
-    }
+}
+
+fn print_batch(arguments: &Arguments, batch: &Batch) {
+    let cache = &arguments.options.cache;
     for file in &batch.files {
         for part in &file.parts {
             println!("{}", line(&file.file, part));
@@ -79,15 +132,24 @@ fn print(arguments: &Arguments, batch: &Batch) {
             }
         }
     }
+    if let Some(swept) = &batch.swept {
+        println!("{}", swept_line(cache, swept));
+    }
     println!(
-        "{} parts in {} files: {} baked, {} reused; {:.2} s; cache {}",
-        batch.parts(),
-        batch.files.len(),
+        "{} in {}: {} baked, {} reused; {:.2} s; cache {}",
+        count(batch.parts(), "part"),
+        count(batch.files.len(), "file"),
         batch.baked(),
         batch.parts() - batch.baked(),
         batch.seconds,
-        arguments.options.cache.display()
+        cache.display()
     );
+}
+
+fn swept_line(cache: &Path, swept: &Swept) -> String {
+    let [dropped, kept] = [swept.dropped, swept.kept]
+        .map(|tally| format!("{} ({})", count(tally.files, "file"), DecimalBytes(tally.bytes)));
+    format!("cache {}: dropped {dropped}, kept {kept}", cache.display())
 }
 
 fn line(file: &str, part: &PartOutcome) -> String {

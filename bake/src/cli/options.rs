@@ -14,6 +14,10 @@ pub struct SceneOptions {
     /// Folder that keeps what was computed; it can be copied to another machine
     #[arg(long, value_name = "DIR", default_value = ".equilux")]
     pub cache: PathBuf,
+    /// In the end drop from the cache what was not used for longest until it holds at most this much, such as 2GB; what this
+    /// run used stays
+    #[arg(long, value_name = "SIZE", value_parser = super::size::parse)]
+    pub cache_limit: Option<u64>,
     /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
     #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]
     pub element_size: Option<ElementSize>,

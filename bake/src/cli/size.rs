@@ -1,0 +1,46 @@
+//! Sizes and counts as people write and read them: `2GB`, `512 MiB`, `1 file`.
+
+/// Units and how many bytes they are, for comparison without case.
+const UNITS: [(&str, f64); 9] = [
+    ("", 1.0),
+    ("b", 1.0),
+    ("kb", 1e3),
+    ("mb", 1e6),
+    ("gb", 1e9),
+    ("tb", 1e12),
+    ("kib", 1024.0),
+    ("mib", 1048576.0),
+    ("gib", 1073741824.0),
+];
+
+/// The number of bytes that `text` says.
+pub fn parse(text: &str) -> Result<u64, String> {
+    let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
+    let (number, unit) = text.split_at(unit_at);
+    let scale = UNITS.iter().find(|(name, _)| unit.eq_ignore_ascii_case(name)).map(|(_, scale)| scale);
+    match (number.trim().parse::<f64>(), scale) {
+        (Ok(number), Some(scale)) if number >= 0.0 && number.is_finite() => Ok((number * scale) as u64),
+        _ => Err("a size is a number of bytes, or of kB, MB, GB, TB, KiB, MiB or GiB, such as 2GB".into()),
+    }
+}
+
+/// `1 file`, `2 files`.
+pub fn count(number: usize, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_read_as_people_write_them() {
+        let sizes = [("2GB", 2_000_000_000), ("1.5 kb", 1500), ("512MiB", 512 << 20), ("0", 0), ("77b", 77)];
+        for (text, bytes) in sizes {
+            assert_eq!(parse(text), Ok(bytes), "{text}");
+        }
+        for text in ["", "GB", "-1", "2 XB", "nan", "inf", "1e400", "1 2"] {
+            assert!(parse(text).is_err(), "{text}: {:?}", parse(text));
+        }
+    }
+}
