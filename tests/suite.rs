@@ -4,5 +4,5 @@ mod bad_input;
 mod cli;
 mod parts;
 mod physics;
+mod stiff;
 mod truth;
-mod workshop;

@@ -1,7 +1,7 @@
 //! A damaged cache costs time and a note, never a wrong answer.
 
-use crate::workshop::Workshop;
 use equilux_tests::rooms::furnished;
+use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! Folders that cannot be written: said before anything is computed.
 
-use crate::workshop::Workshop;
 use equilux_tests::rooms::square;
+use equilux_tests::workshop::Workshop;
 
 #[test]
 fn a_file_where_a_folder_should_be_is_named_and_left_alone() {

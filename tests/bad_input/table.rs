@@ -1,10 +1,10 @@
 //! Scenes that cannot be: refused by name, with a remedy, and nothing is written.
 
-use crate::workshop::Workshop;
 use equilux_formats::Material;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, lamp, square};
 use equilux_tests::shapes::room;
+use equilux_tests::workshop::Workshop;
 use glam::DVec3;
 use serde_json::json;
 

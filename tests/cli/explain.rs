@@ -1,9 +1,9 @@
 //! `bake --explain` says why each part was or was not baked.
 
-use crate::workshop::Workshop;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{half, paint};
 use equilux_tests::shapes::{joined, solid};
+use equilux_tests::workshop::Workshop;
 use glam::dvec3;
 
 #[test]

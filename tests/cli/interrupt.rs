@@ -1,8 +1,8 @@
 //! Ctrl-C during the exchange ends it after the round, and everything is still written.
 
-use crate::workshop::Workshop;
 use equilux_tests::program::program;
 use equilux_tests::rooms::echoing;
+use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 use std::process::{Command, Stdio};
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! `--json`: one object on stdout and nothing else.
 
-use crate::workshop::Workshop;
 use equilux_tests::rooms::furnished;
+use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 
 /// Keys that other programs rely on, as JSON pointers.

@@ -1,7 +1,7 @@
 //! The files a run leaves, and the table of elements.
 
-use crate::workshop::Workshop;
 use equilux_tests::rooms::{echoing, furnished};
+use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 
 const HEADER: &str =

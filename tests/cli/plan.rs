@@ -1,10 +1,10 @@
 //! `assemble plan` says what a run would do, and then the run does it.
 
-use crate::workshop::Workshop;
 use equilux_assemble::report::summary::{BLACK_ROWS, SHARED, UNSEEN};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, lamp, paint};
 use equilux_tests::shapes::{joined, part, rectangle, room, solid};
+use equilux_tests::workshop::Workshop;
 use glam::{DVec3, dvec3};
 use serde_json::{Value, json};
 

@@ -1,7 +1,7 @@
 //! Help that shows how, and exit code 2 for what cannot be meant.
 
-use crate::workshop::Workshop;
 use equilux_tests::rooms::square;
+use equilux_tests::workshop::Workshop;
 
 #[test]
 fn help_shows_examples() {

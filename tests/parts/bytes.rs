@@ -1,7 +1,7 @@
 //! The same bytes whoever computes them: a cache can be shared, and a picture compared.
 
-use crate::workshop::Workshop;
 use equilux_tests::rooms::furnished;
+use equilux_tests::workshop::Workshop;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 

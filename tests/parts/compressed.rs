@@ -1,6 +1,5 @@
 //! Entries for clusters: smaller and faster than the exact matrix, as wrong as asked for, and never more than proved.
 
-use crate::workshop::{Workshop, assembled};
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
 use equilux_assemble::run::Job;
@@ -10,6 +9,7 @@ use equilux_bake::treecode::Resolution;
 use equilux_tests::levels;
 use equilux_tests::rooms;
 use equilux_tests::shapes::{alone, coupling, fine};
+use equilux_tests::workshop::{Workshop, assembled};
 
 fn shipped(workshop: &Workshop, scene: &str, size: ElementSize, tolerance: f64) -> Job {
     let mut job = workshop.job(Division::Authored);

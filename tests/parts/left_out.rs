@@ -1,6 +1,5 @@
 //! What changes no radiosity is left out, told, and not missed.
 
-use crate::workshop::{Workshop, assembled};
 use equilux_assemble::report::Report;
 use equilux_assemble::report::summary::{BLACK_ROWS, DARK_SOLVES, UNSEEN};
 use equilux_assemble::run::Job;
@@ -9,6 +8,7 @@ use equilux_formats::Material;
 use equilux_tests::model::Node;
 use equilux_tests::rooms::{half, lamp, paint};
 use equilux_tests::shapes::{joined, room, solid};
+use equilux_tests::workshop::{Workshop, assembled};
 use glam::{DVec3, dvec3};
 
 fn count(report: &Report, reason: &str) -> usize {

@@ -1,11 +1,11 @@
 //! Nothing is computed twice, and what changed is computed again: that part and no other.
 
-use crate::workshop::{Workshop, assembled};
 use equilux_assemble::report::Report;
 use equilux_bake::prepare::Division;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, half, lamp, paint};
 use equilux_tests::shapes::{joined, solid};
+use equilux_tests::workshop::{Workshop, assembled};
 use glam::dvec3;
 use serde_json::json;
 

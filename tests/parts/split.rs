@@ -1,12 +1,12 @@
-//! The light of a scene made of parts is the light of the classic whole-scene matrix.
+//! The light of a scene made of parts is the light of the classic whole-scene matrix, with parts as authored and with
+//! cells between planes anywhere.
 
-use crate::workshop::{Workshop, assembled};
 use equilux_assemble::exchange::Method;
 use equilux_assemble::run::Job;
 use equilux_bake::bisect::Cut;
-use equilux_bake::prepare::{Division, Preparation};
-use equilux_formats::LocalSolver;
+use equilux_bake::prepare::Division;
 use equilux_tests::rooms::furnished;
+use equilux_tests::workshop::{Workshop, assembled};
 use proptest::prelude::*;
 
 /// Both sides solve the same equation down to rounding, some 1e-14 of the brightest radiosity; the darkest elements of
@@ -20,8 +20,7 @@ const CLOSED: f64 = 1e-12;
 fn agrees_with_the_whole(job: &Job) {
     let report = assembled(&Job { verify: true, ..job.clone() });
     let difference = report.verify.as_ref().expect("a comparison").max_rel_diff;
-    let what =
-        format!("{:?}, {:?}, {:?}", job.preparation.division, job.method, job.preparation.local_solver);
+    let what = format!("{:?}, {:?}", job.preparation.division, job.method);
     assert!(difference <= ROUNDING, "{what}: {difference:e} away from the whole, more than {ROUNDING:e}");
     let defect = report.row_sum_defect.max;
     assert!(
@@ -29,34 +28,6 @@ fn agrees_with_the_whole(job: &Job) {
         "{what}: a row of this closed scene sums to 1 ± {defect:e}, more than {CLOSED:e}"
     );
     assert!(report.converged, "{what}: not converged, {:?}", report.rounds.last());
-}
-
-/// All local solvers, and both methods, on one division. The cache is shared: what is compared is the solution.
-fn every_way_of_solving_agrees(division: Division) {
-    let workshop = Workshop::with(&furnished());
-    let job = workshop.job(division);
-    agrees_with_the_whole(&Job { method: Method::GaussSeidel, ..job.clone() });
-    for solver in
-        [LocalSolver::Direct, LocalSolver::GaussSeidel, LocalSolver::Progressive, LocalSolver::Iterative]
-    {
-        let preparation = Preparation { local_solver: Some(solver), ..job.preparation.clone() };
-        agrees_with_the_whole(&Job { preparation, ..job.clone() });
-    }
-}
-
-#[test]
-fn two_cells_are_the_whole() {
-    every_way_of_solving_agrees(Division::Bisect(2));
-}
-
-#[test]
-fn eight_cells_are_the_whole() {
-    every_way_of_solving_agrees(Division::Bisect(8));
-}
-
-#[test]
-fn thirty_two_cells_are_the_whole() {
-    every_way_of_solving_agrees(Division::Bisect(32));
 }
 
 #[test]

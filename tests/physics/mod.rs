@@ -2,5 +2,4 @@
 
 mod closed;
 mod curved;
-mod from_a_point;
 mod touching;

@@ -1,5 +1,7 @@
-//! What the tests and benchmarks share: shapes, rooms and glTF files made by hand, and our programs.
+//! What the tests and benchmarks share: shapes, rooms and glTF files made by hand, our programs, and the cases with
+//! known answers.
 
+pub mod cases;
 pub mod curved;
 pub mod levels;
 pub mod measure;
@@ -7,3 +9,5 @@ pub mod model;
 pub mod program;
 pub mod rooms;
 pub mod shapes;
+pub mod table;
+pub mod workshop;

@@ -2,8 +2,6 @@
 //! as standard errors. `scenes/<name>/truth.csv` holds one line an element; `scenes/README.md` says what its
 //! columns mean.
 
-mod table;
-
 use equilux_assemble::exchange::{Goal, Method};
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::run::{Job, run};
@@ -11,9 +9,9 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
+use equilux_tests::table::Table;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
-use table::Table;
 
 /// What a path tracer and collocation at centroids may differ by once the noise is out: the light within a sender is
 /// taken to be constant. Measured: 0.35 % to 0.83 %.

@@ -1,5 +1,7 @@
 //! A folder to try things in: scenes written there, assembled by library or program, nothing left behind.
 
+use crate::model::{Model, Node};
+use crate::program::program;
 use assert_cmd::Command;
 use equilux_assemble::exchange::{Goal, Method};
 use equilux_assemble::proof::sample::ExactRows;
@@ -9,8 +11,6 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
-use equilux_tests::model::{Model, Node};
-use equilux_tests::program::program;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -24,13 +24,17 @@ pub struct Workshop(TempDir);
 
 /// How a program ended.
 pub struct Ended {
+    /// Its exit code; none if a signal ended it.
     pub code: Option<i32>,
+    /// What it printed.
     pub stdout: String,
+    /// What it said of itself.
     pub stderr: String,
 }
 
 impl Workshop {
     /// An empty one.
+    #[expect(clippy::new_without_default, reason = "a folder is made, which no default should do")]
     pub fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
