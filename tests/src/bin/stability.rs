@@ -2,7 +2,6 @@
 
 use equilux_tests::cases::{Case, themes};
 use std::process::ExitCode;
-use std::time::Instant;
 
 fn main() -> ExitCode {
     let wanted = std::env::args().nth(1).unwrap_or_default();
@@ -20,7 +19,6 @@ fn main() -> ExitCode {
 }
 
 fn shown(theme: &str, case: &Case) -> bool {
-    let start = Instant::now();
     let finding = case.found();
     let holds = case.holds(&finding);
     let mut rounds = finding.rounds.map_or("-".into(), |rounds| rounds.to_string());
@@ -32,8 +30,5 @@ fn shown(theme: &str, case: &Case) -> bool {
         "| {theme}: {} | {} | {} | {:.1e} | {:.0e} | {rounds} | {verdict} |",
         case.name, finding.expected, finding.got, finding.error, case.tolerance
     );
-    if std::env::var_os("STABILITY_SECONDS").is_some() {
-        println!("{:.1} s", start.elapsed().as_secs_f64());
-    }
     holds
 }

@@ -15,15 +15,19 @@ use serde_json::json;
 /// The cases.
 pub fn cases() -> Vec<Case> {
     let sums = "the rounding of row sums, 1e-15, times ρ / (1 − ρ)";
+    let flat = "corners in f32 lie in a plane within 2e-7, times ρ / (1 − ρ)";
     vec![
         Case::new("furnace, ρ = 0.5", 1e-12, sums, || cube_of(0.5)),
         Case::new("furnace, ρ = 0.9", 1e-12, sums, || cube_of(0.9)),
         Case::new("furnace, ρ = 0.999", 1e-12, sums, || cube_of(0.999)),
         Case::new("furnace, ρ = 1 − 2⁻²⁰", 1e-9, sums, || cube_of(1.0 - 2f64.powi(-20))),
         Case::new("furnace with boxes in it", 1e-10, "clipped slivers round worse than whole faces", || {
-            furnace(&[Node::new("room", furnished(0.9))], &Setting::metres(0.2))
+            turned_boxes(1)
         }),
         Case::new("furnace with boxes in it, in 8 parts", 1e-10, "the same across couplings", || {
+            turned_boxes(8)
+        }),
+        Case::new("furnace with f32 corners turned, in 8 parts", 1e-5, flat, || {
             furnace(&[Node::new("room", furnished(0.9))], &Setting::metres(0.2).cut(8))
         }),
         Case::new(
@@ -88,6 +92,21 @@ fn furnished(reflectance: f64) -> Part {
     let first = boxed(dvec3(0.3, 0.3, 0.35), DVec3::Z, 0.5);
     let second = boxed(dvec3(0.7, 0.3, 0.45), dvec3(1., 1., 0.).normalize(), 1.0);
     joined([first, second, cube(reflectance)])
+}
+
+/// Two boxes that are turned by their nodes, which leaves their faces flat to the last digit.
+fn turned_boxes(cells: usize) -> Finding {
+    let white = || grey(0.9, 1.0);
+    let crate_ = solid(white(), DVec3::splat(-0.125), dvec3(0.125, 0.1875, 0.0625));
+    let crate_at = |at: DVec3| Node { at, ..Node::new("crate", crate_.clone()) };
+    let room = Node::new("room", room(white(), DVec3::ZERO, DVec3::ONE));
+    let model =
+        Model::of(&[room, crate_at(dvec3(0.3125, 0.3125, 0.375)), crate_at(dvec3(0.6875, 0.3125, 0.5))]);
+    let model = model.with("/nodes/1/rotation", json!([0.0, 0.0, 0.28, 0.96]));
+    let model = model.with("/nodes/2/rotation", json!([0.48, 0.36, 0.0, 0.8]));
+    solved_file(&model, &Setting::metres(0.25).cut(cells))
+        .unwrap_or_else(|error| panic!("{error}"))
+        .worst(uniform)
 }
 
 fn every_solver() -> Finding {

@@ -31,11 +31,11 @@ pub fn cases() -> Vec<Case> {
         Case::new("duplicate faces add up to nothing more", 1e-12, sums, || {
             light(&[twice()], &Setting::metres(0.5)).row_sums()
         }),
-        Case::new("a part placed twice in one place", 1e-12, sums, || {
-            let crate_ = solid(grey(0.5, 1.0), DVec3::splat(0.25), DVec3::splat(0.5));
-            let nodes =
-                [Node::new("room", cube()), Node::new("crate", crate_.clone()), Node::new("again", crate_)];
-            no_more_than_all(&nodes)
+        Case::new("a part placed twice in one place is named", 0.0, said, || {
+            noted(&placed_twice(), "coincide")
+        }),
+        Case::new("a part placed twice adds up to nothing more", 1e-12, sums, || {
+            no_more_than_all(&placed_twice())
         }),
         Case::new("a rug in the plane of its floor", 1e-12, sums, || {
             no_more_than_all(&[Node::new("room", joined([cube(), rug()]))])
@@ -101,6 +101,11 @@ fn spoilt() -> Node {
 
 fn twice() -> Node {
     Node::new("room", joined([cube(), cube()]))
+}
+
+fn placed_twice() -> [Node; 3] {
+    let crate_ = solid(grey(0.5, 1.0), DVec3::splat(0.25), DVec3::splat(0.5));
+    [Node::new("room", cube()), Node::new("crate", crate_.clone()), Node::new("crate again", crate_)]
 }
 
 fn nothing() -> Node {
