@@ -1,7 +1,9 @@
 //! All tests in one binary: physics first, then contracts.
 
 mod bad_input;
+mod cache;
 mod cli;
+mod crash;
 mod parts;
 mod physics;
 mod stiff;

@@ -78,16 +78,15 @@ pub fn cached<T: Stored>(
     Ok(Some((value, origin)))
 }
 
-/// The turn to compute; none if the monitor was stopped before another process was done.
+/// The turn to compute; none if the monitor is stopped before another process is done.
 fn wait_for_turn(store: &Store, name: &str, manifest: &Manifest, monitor: &Monitor) -> Option<Turn> {
     let key = manifest.key();
-    let mut turn = store.try_turn(&key);
-    if turn.is_none() {
+    while !monitor.stopped() {
+        if let Some(turn) = store.try_turn(&key) {
+            return Some(turn);
+        }
         monitor.begin(format!("another process computes {name}: waiting for it"), 1);
-    }
-    while turn.is_none() && !monitor.stopped() {
         std::thread::sleep(PATIENCE);
-        turn = store.try_turn(&key);
     }
-    turn
+    None
 }

@@ -97,7 +97,7 @@ fn scenes_that_cannot_be_are_refused_and_nothing_is_written() {
 
 /// A furnace is known only by its form factors, which may stay in the cache.
 fn is_input_or_cached(path: &std::path::Path) -> bool {
-    path.ends_with("scene.glb") || path.extension().is_some_and(|ending| ending == "eqx")
+    path.ends_with("scene.glb") || path.components().any(|folder| folder.as_os_str() == ".equilux")
 }
 
 /// A closed room that shines and reflects everything.
