@@ -12,10 +12,7 @@ pub fn cases() -> Vec<Case> {
     let sliver = "the millionth part of an edge is known to 1e-16 of the edge";
     vec![
         Case::new("a parallel rectangle over its corner", 1e-14, edges, || {
-            Finding::absolute(
-                0.138531605994893,
-                from_below(dvec3(0., 0., 1.), dvec3(1., 1., 1.), -DVec3::Z),
-            )
+            Finding::absolute(0.138531605994893, from_below(dvec3(0., 0., 1.), dvec3(1., 1., 1.), -DVec3::Z))
         }),
         Case::new("a perpendicular rectangle", 1e-14, edges, || {
             Finding::absolute(
