@@ -61,6 +61,9 @@ struct Assembly {
     /// Write a table of all elements, their optics and their light
     #[arg(long, value_name = "FILE.csv")]
     elements: Option<PathBuf>,
+    /// Write for Make, Ninja or CMake which files were read; the target in it is the result.glb
+    #[arg(long, value_name = "FILE")]
+    depfile: Option<PathBuf>,
 }
 
 /// The exchange's name on the command line.
@@ -138,6 +141,8 @@ impl Assembly {
             exact_rows: self.exact_rows,
             verify: self.verify,
             elements: self.elements.clone(),
+            depfile: self.depfile.clone(),
+            cache_limit: self.options.cache_limit,
         }
     }
 }

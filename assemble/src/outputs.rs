@@ -16,6 +16,9 @@ use equilux_formats::{Error, Optics, Result, Rgb, Scene};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
+/// The file name of the lit model.
+pub const RESULT: &str = "result.glb";
+
 /// What there is to show.
 pub struct Light<'a> {
     /// The parts in their places.
@@ -111,7 +114,7 @@ fn write_tables(job: &Job, folder: &Path, light: &Light, exposure: Exposure) -> 
         part_names: &part_names,
         instance_names: &instance_names,
     };
-    let result = folder.join("result.glb");
+    let result = folder.join(RESULT);
     gltf_export::write(&result, &scene_light, exposure)?;
     let mut written = vec![result];
     if let Some(path) = &job.elements {

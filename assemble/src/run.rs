@@ -4,7 +4,7 @@ use crate::account::refuse_endless_light;
 use crate::classic::{classic, whole_optics};
 use crate::coupling::{Coupled, Coupler};
 use crate::exchange::{Goal, Method, exchange, nodes};
-use crate::outputs::{Light, check_writable, write_all};
+use crate::outputs::{Light, RESULT, check_writable, write_all};
 use crate::placed::Placed;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
@@ -14,7 +14,8 @@ use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::prepare::{Preparation, Prepared, prepare};
-use equilux_formats::{Error, Optics, Result, Store};
+use equilux_bake::{depfile, stamp};
+use equilux_formats::{Error, Optics, Result, Store, Swept};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -39,6 +40,10 @@ pub struct Job {
     pub verify: bool,
     /// Where to write the table of elements.
     pub elements: Option<PathBuf>,
+    /// Where to write for build tools which files were read.
+    pub depfile: Option<PathBuf>,
+    /// How many bytes the cache may have in the end; none to let it grow.
+    pub cache_limit: Option<u64>,
 }
 
 /// Run the job; everything is written when this returns.
@@ -47,6 +52,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let scene = import_scene(&job.scene)?;
     let prepared = prepare(&scene, &job.preparation)?;
     check_writable(job, &scene)?;
+    job.depfile.as_deref().map(stamp::check).transpose()?;
     let store = Store::open(&job.cache)?;
     let stopped = || {
         let remedy = "run the same command again: what was finished is in the cache";
@@ -67,6 +73,10 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
 
     let light = Light { placed: &placed, optics: &optics, outcome: &outcome, classic: classic.as_ref() };
     let outputs = write_all(job, &scene, &light, monitor)?;
+    if let Some(path) = &job.depfile {
+        depfile::write(path, &job.out.join(&scene.name).join(RESULT), &scene.sources)?;
+    }
+    let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     let run = Run {
         placed: &placed,
         coupled: &coupled,
@@ -80,6 +90,10 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     report.bytes.peak_rss = peak;
     report.seconds.total = start.elapsed().as_secs_f64();
     report.notes = [scene.notes, damage_notes(&store), report.notes].concat();
+    if let Some(Swept { dropped, .. }) = swept.filter(|swept| swept.dropped.files > 0) {
+        let note = format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes);
+        report.notes.push(note);
+    }
     if job.verify && classic.is_none() {
         report.notes.push("stopped: the classic matrix was not computed, so nothing was compared".into());
     }

@@ -37,6 +37,14 @@ fn baking_names_every_file_that_was_read_and_touches_the_stamp() {
 }
 
 #[test]
+fn assembling_names_every_file_that_was_read() {
+    let workshop = level();
+    let options = ["level.glb", "--element-size", "1", "--rounds", "1", "--depfile", "level.d"];
+    done(&workshop, "assemble", &options);
+    assert_eq!(text(&workshop, "level.d"), format!("out/level/result.glb: {SOURCES}\n"));
+}
+
+#[test]
 fn a_file_that_fails_keeps_no_other_from_being_baked_but_the_stamp_from_being_touched() {
     let workshop = level();
     std::fs::write(workshop.path("broken.glb"), "moth").expect("a written file");

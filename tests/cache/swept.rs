@@ -98,4 +98,8 @@ fn a_limit_drops_what_was_not_used_for_longest_but_nothing_of_this_run() {
     let batch = bake("other.glb", &["--cache-limit", "1kB"]);
     assert_eq!(cached(&workshop), other, "the other scene is older, though it was made later");
     assert_eq!(batch["swept"]["dropped"]["files"], both.len() - other.len(), "{}", batch["swept"]);
+
+    assembled(&workshop, "scene.glb", &[&COARSE[..], &["--cache-limit", "1kB"]].concat());
+    assert!(cached(&workshop).is_disjoint(&other), "assembling has a limit too");
+    assert_eq!(assembled(&workshop, "scene.glb", &COARSE), 0, "form factors after a run with a limit");
 }

@@ -80,6 +80,8 @@ impl Workshop {
             exact_rows: ExactRows::About(256),
             verify: false,
             elements: None,
+            depfile: None,
+            cache_limit: None,
         }
     }
 

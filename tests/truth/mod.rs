@@ -73,6 +73,8 @@ fn assembled(scene: &Path) -> Table {
         exact_rows: ExactRows::About(0),
         verify: false,
         elements: Some(elements.clone()),
+        depfile: None,
+        cache_limit: None,
     };
     let report = run(&job, &Monitor::default()).unwrap();
     assert!(report.converged, "the exchange ended without the error asked for: {:?}", report.rounds.last());
