@@ -10,7 +10,7 @@ use equilux_bake::keys::{CORRECTED, COUPLING, placed_manifest};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Request, Resolution, block};
-use equilux_formats::{BakedLight, Digest, Factors, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
+use equilux_formats::{BakedLight, Digest, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
 use std::path::Path;
 use std::time::Duration;
 
@@ -56,9 +56,9 @@ impl Coupled {
         self.corrected.as_ref().map_or(baked, |c| &c.self_block)
     }
 
-    /// The factors of the block that is in force.
-    pub fn factors<'a>(&'a self, baked: &'a LocalEquilibrium) -> Option<&'a Factors> {
-        self.corrected.as_ref().map_or(baked, |c| &c.local).factors.as_ref()
+    /// The equilibrium of the block that is in force.
+    pub fn local<'a>(&'a self, baked: &'a LocalEquilibrium) -> &'a LocalEquilibrium {
+        self.corrected.as_ref().map_or(baked, |c| &c.local)
     }
 }
 
@@ -138,8 +138,7 @@ impl Coupler<'_> {
         let manifest = light_manifest(key, &part.optics, part.local.solver);
         let name = self.name(instance, "corrected light");
         let (light, _) = cached(self.store, &name, &manifest, self.monitor, || {
-            let clusters = &part.geometry.clusters;
-            let local = local_equilibrium(&self_block, clusters, &part.optics, part.local.solver);
+            let local = local_equilibrium(&self_block, &part.geometry, &part.optics, part.local.solver);
             Ok(Some(BakedLight { optics: part.optics.clone(), local }))
         })?
         .expect("a local equilibrium is not stopped halfway");

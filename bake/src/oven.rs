@@ -2,21 +2,22 @@
 
 use crate::cached::{Origin, cached, foreseen};
 use crate::equilibrium::endless::endless_in_block;
+use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
 use crate::prepare::PreparedPart;
 use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use equilux_formats::{
-    BakedGeometry, BakedLight, BakedPart, ClusterTree, Content, Digest, Element, Error, Geometry, Key,
-    LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
+    BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Key, LocalEquilibrium,
+    LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
-pub const KERNEL_VERSION: u32 = 3;
+pub const KERNEL_VERSION: u32 = 4;
 
 /// A baked part and how it came about.
 pub struct Baked {
@@ -76,12 +77,7 @@ impl Oven<'_> {
             self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
             self.refuse_endless_light(part, &geometry)?;
             Ok(Some(BakedLight {
-                local: local_equilibrium(
-                    &geometry.self_block,
-                    &geometry.geometry.clusters,
-                    &part.optics,
-                    part.solver,
-                ),
+                local: local_equilibrium(&geometry.self_block, &geometry.geometry, &part.optics, part.solver),
                 optics: part.optics.clone(),
             }))
         })?
@@ -126,17 +122,19 @@ impl Oven<'_> {
     }
 }
 
-/// The part's light with nothing arriving from outside, and what its solver wants kept.
+/// The part's light with nothing arriving from outside, its answers to what arrives, and what its solver wants kept.
 pub fn local_equilibrium(
     block: &Rows,
-    clusters: &ClusterTree,
+    geometry: &Geometry,
     optics: &Optics,
     solver: LocalSolver,
 ) -> LocalEquilibrium {
+    let clusters = &geometry.clusters;
     let factors = factorise(block, clusters, &optics.reflectance, solver);
     let system = LocalSystem::new(block, clusters, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
-    LocalEquilibrium { solver, radiosity, factors }
+    let answers = answers(&system, geometry);
+    LocalEquilibrium { solver, radiosity, factors, answers }
 }
 
 /// Everything that the part's own form factors depend on, and nothing else.

@@ -18,7 +18,7 @@ mod store;
 mod stored;
 mod whole_file;
 
-pub use baked::{BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
+pub use baked::{Answers, BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
 pub use clusters::ClusterTree;
 pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
 pub use error::{Error, Result};

@@ -202,6 +202,26 @@ impl Rows {
         .collect()
     }
 
+    /// Σ_i w_i F_ij over a group's receivers i, for each sender j that any of them sees: the transposed block, for sums over
+    /// receivers. One weight a receiver of the group.
+    pub fn scatter_group<const N: usize>(
+        &self,
+        group: usize,
+        weights: &[[f64; N]],
+    ) -> Vec<(usize, [f64; N])> {
+        let columns = self.columns_of(group);
+        let first = self.groups[group].value;
+        let of = |(k, &column): (usize, &u32)| {
+            let mut sum = [0.0; N];
+            for (row, (receiver, weight)) in self.receivers_of(group).zip(weights).enumerate() {
+                let value = self.value(first + row * columns.len() + k, receiver);
+                sum.iter_mut().zip(weight).for_each(|(sum, weight)| *sum += value * weight);
+            }
+            (column as usize, sum)
+        };
+        columns.iter().enumerate().map(of).collect()
+    }
+
     fn columns_of(&self, group: usize) -> &[u32] {
         &self.columns[self.groups[group].column..self.groups[group + 1].column]
     }

@@ -1,8 +1,8 @@
 //! What the cache promises: what comes back is what was put in, to the last bit, or a sentence that says why not.
 
 use equilux_formats::{
-    BakedGeometry, BakedLight, ClusterTree, Content, Corners, Element, Error, FORMAT_VERSION, Face, FaceId,
-    Factors, Geometry, Kind, LocalEquilibrium, LocalSolver, Lookup, Lu, Manifest, MaterialId, Optics,
+    Answers, BakedGeometry, BakedLight, ClusterTree, Content, Corners, Element, Error, FORMAT_VERSION, Face,
+    FaceId, Factors, Geometry, Kind, LocalEquilibrium, LocalSolver, Lookup, Lu, Manifest, MaterialId, Optics,
     Precision, Reader, RowGroup, Rows, Store, Stored, Writer,
 };
 use glam::DVec3;
@@ -39,7 +39,13 @@ fn light() -> BakedLight {
     let factors = Some(Factors { channels: vec![lu(1.0), lu(0.9)], of_channel: [0, 1, 0] });
     let optics =
         Optics { reflectance: vec![[0.5, 0.25, 0.5]; 2], emission: vec![[0.0; 3], [10.0, 1e12, 1e-12]] };
-    let local = LocalEquilibrium { solver: LocalSolver::Direct, radiosity: vec![[1.0 / 3.0; 3]; 2], factors };
+    let answers = Answers {
+        radiosity: vec![vec![[0.5, 0.25, 0.0]; 2]],
+        matrix: vec![[0.125, 1e-9, 0.0]],
+        returned: [0.75, 0.5, 0.0],
+    };
+    let radiosity = vec![[1.0 / 3.0; 3]; 2];
+    let local = LocalEquilibrium { solver: LocalSolver::Direct, radiosity, factors, answers };
     BakedLight { optics, local }
 }
 
@@ -105,7 +111,7 @@ fn foreign_files_are_named_as_such() {
     let mut newer = bytes.clone();
     newer[8..12].copy_from_slice(&(FORMAT_VERSION + 6).to_le_bytes());
     let message = read_bytes::<Rows>(&folder, &newer).unwrap_err().to_string();
-    for part in ["changed.eqx", "format version 8", "expected version 2", "bake it again"] {
+    for part in ["changed.eqx", "format version 9", "expected version 3", "bake it again"] {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 
@@ -141,7 +147,7 @@ fn by_hand(count: u64, length: impl Fn(u64) -> u64) -> Vec<u8> {
     let entry = Entry { name: "numbers", number: "f64", count, length: length(frame.len() as u64), checksum };
     let index = Index { manifest: manifest(), arrays: vec![entry] };
     let messages = [rmp_serde::to_vec_named(&index).unwrap(), vec![0xC0]].concat();
-    let header = [&b"EQUILUX\0\x02\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
+    let header = [&b"EQUILUX\0\x03\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
     let checksum = *blake3::hash(&[&header[..], &messages].concat()).as_bytes();
     [&header[..], &checksum, &messages, &frame].concat()
 }

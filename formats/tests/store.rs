@@ -2,8 +2,8 @@
 //! and too little room.
 
 use equilux_formats::{
-    BakedLight, Content, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rows, Store,
-    Swept, Tally, remove_left_over_beside, write_whole,
+    Answers, BakedLight, Content, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rows,
+    Store, Swept, Tally, remove_left_over_beside, write_whole,
 };
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -25,8 +25,12 @@ fn coupling() -> Rows {
 
 fn light() -> BakedLight {
     let optics = Optics { reflectance: vec![[0.5, 0.25, 0.5]], emission: vec![[10.0, 1e12, 1e-12]] };
-    let local =
-        LocalEquilibrium { solver: LocalSolver::Iterative, radiosity: vec![[1.0 / 3.0; 3]], factors: None };
+    let local = LocalEquilibrium {
+        solver: LocalSolver::Iterative,
+        radiosity: vec![[1.0 / 3.0; 3]],
+        factors: None,
+        answers: Answers::default(),
+    };
     BakedLight { optics, local }
 }
 

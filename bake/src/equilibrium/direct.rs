@@ -33,6 +33,17 @@ fn lu(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb], channel: usize)
             clusters.spread(node, &mut |j, share| matrix[(i, j)] -= value * share);
         }
     }
+    factored(matrix)
+}
+
+/// Factor three matrices of the same size, one a channel, `size × size`, given by their entries (channel, row, column).
+pub fn factorise_dense(size: usize, entry: impl Fn(usize, usize, usize) -> f64) -> Factors {
+    let channels = (0..3).map(|c| factored(Mat::from_fn(size, size, |i, j| entry(c, i, j)))).collect();
+    Factors { channels, of_channel: [0, 1, 2] }
+}
+
+fn factored(mut matrix: Mat<f64>) -> Lu {
+    let n = matrix.nrows();
     let (mut rows, mut inverse) = (vec![0u32; n], vec![0u32; n]);
     let mut memory = MemBuffer::new(lu_in_place_scratch::<u32, f64>(n, n, Par::Seq, Default::default()));
     let stack = MemStack::new(&mut memory);

@@ -1,5 +1,7 @@
 //! Flexible GMRES on three channels at once: one matrix application serves red, green and blue, while each channel
 //! has its own Krylov space and stops on its own. Saad & Schultz 1986; Saad 1993 for the flexible form.
+//!
+//! The matrix is only ever applied to a vector, by the caller: it may be dense, clusters, or blocks between parts.
 
 use super::{added, largest, scaled, subtract};
 use equilux_formats::Rgb;
@@ -10,20 +12,18 @@ const RESTART: usize = 40;
 /// Restarts after which the answer is returned as it is; the caller's own bound then says how good it is.
 const RESTARTS: usize = 200;
 
-/// Improve `x` until ‖rhs − A x‖∞ ≤ tolerance × ‖x‖∞ in every channel, or until rounding stops all progress. Returns
-/// the number of applications of A. `precondition` approximates A⁻¹ and may differ from call to call.
+/// Improve `x` until ‖rhs − A x‖∞ ≤ tolerance × ‖x‖∞ in every channel, or until rounding stops all progress.
+/// `precondition` approximates A⁻¹ and may differ from call to call.
 pub fn gmres(
     mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>,
     mut precondition: impl FnMut(&[Rgb]) -> Vec<Rgb>,
     rhs: &[Rgb],
     x: &mut [Rgb],
     tolerance: f64,
-) -> usize {
-    let mut applications = 0;
+) {
     let mut previous = [f64::INFINITY; 3];
     for _ in 0..RESTARTS {
         let ax = apply(x);
-        applications += 1;
         let residual: Vec<Rgb> = rhs.iter().zip(&ax).map(|(&b, &a)| subtract(b, a)).collect();
         let (left, scale) = (largest(&residual), largest(x));
         let open: [bool; 3] =
@@ -32,37 +32,94 @@ pub fn gmres(
             break;
         }
         previous = left;
-        let target = std::array::from_fn(|c| tolerance * scale[c].max(left[c]));
-        applications += cycle(&mut apply, &mut precondition, &residual, open, target, x);
+        let target: Rgb = std::array::from_fn(|c| tolerance * scale[c].max(left[c]));
+        let residual: Vec<Rgb> =
+            residual.iter().map(|r| std::array::from_fn(|c| if open[c] { r[c] } else { 0.0 })).collect();
+        let mut space = Space::new(&residual);
+        while !space.is_full() && (0..3).any(|c| space.left()[c] > target[c]) {
+            let z = precondition(space.newest());
+            let az = apply(&z);
+            space.add(z, az);
+        }
+        x.iter_mut().zip(space.correction()).for_each(|(x, z)| *x = added(*x, z));
     }
-    applications
 }
 
-/// One restart cycle: x ← x + Z y, with y minimising ‖residual − A Z y‖ in each channel.
-fn cycle(
-    apply: &mut impl FnMut(&[Rgb]) -> Vec<Rgb>,
-    precondition: &mut impl FnMut(&[Rgb]) -> Vec<Rgb>,
-    residual: &[Rgb],
-    open: [bool; 3],
-    target: Rgb,
-    x: &mut [Rgb],
-) -> usize {
-    let mut least = LeastSquares::new(std::array::from_fn(|c| if open[c] { norm(residual)[c] } else { 0.0 }));
-    let mut basis = vec![normalised(residual, least.residual)];
-    let mut directions: Vec<Vec<Rgb>> = Vec::new();
-    while directions.len() < RESTART && (0..3).any(|c| least.residual[c].abs() > target[c]) {
-        let z = precondition(&basis[directions.len()]);
-        let mut w = apply(&z);
-        directions.push(z);
-        let column = orthogonalise(&mut w, &basis);
-        let length = norm(&w);
-        basis.push(normalised(&w, length));
-        least.add_column(column, length);
+/// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as [`RESTART`] directions come; and rhs − A z.
+pub fn roughly(mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>, rhs: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
+    let mut space = Space::new(rhs);
+    let target = space.left().map(|norm| norm * share);
+    while !space.is_full() && (0..3).any(|c| space.left()[c] > target[c]) {
+        let z = space.newest().to_vec();
+        let az = apply(&z);
+        space.add(z, az);
     }
-    for (y, z) in least.solve().into_iter().zip(&directions) {
-        x.iter_mut().zip(z).for_each(|(x, &z)| *x = added(*x, scaled(y, z)));
+    (space.correction(), space.residual())
+}
+
+/// A Krylov space that grows by one direction a round, and the correction in it that leaves the least residual: z = Z y
+/// with y minimising ‖r − A Z y‖ in each channel.
+pub struct Space {
+    /// An orthonormal basis of r and A Z.
+    basis: Vec<Vec<Rgb>>,
+    /// Z.
+    directions: Vec<Vec<Rgb>>,
+    least: LeastSquares,
+}
+
+impl Space {
+    /// The space that holds only the residual.
+    pub fn new(residual: &[Rgb]) -> Self {
+        let length = norm(residual);
+        Self {
+            basis: vec![normalised(residual, length)],
+            directions: vec![],
+            least: LeastSquares::new(length),
+        }
     }
-    directions.len()
+
+    /// The newest basis vector: what the next direction should answer.
+    pub fn newest(&self) -> &[Rgb] {
+        &self.basis[self.directions.len()]
+    }
+
+    /// Take in a direction z, mostly the newest basis vector preconditioned, and A z.
+    pub fn add(&mut self, z: Vec<Rgb>, mut az: Vec<Rgb>) {
+        self.directions.push(z);
+        let column = orthogonalise(&mut az, &self.basis);
+        let length = norm(&az);
+        self.basis.push(normalised(&az, length));
+        self.least.add_column(column, length);
+    }
+
+    /// Whether it holds as many directions as it may; then a new one starts from the residual.
+    pub fn is_full(&self) -> bool {
+        self.directions.len() == RESTART
+    }
+
+    /// The norm of the residual that is left, channel by channel.
+    pub fn left(&self) -> Rgb {
+        self.least.residual.map(f64::abs)
+    }
+
+    /// The best correction.
+    pub fn correction(&self) -> Vec<Rgb> {
+        combined(&self.least.solve(), &self.directions, self.basis[0].len())
+    }
+
+    /// The residual that the best correction leaves.
+    pub fn residual(&self) -> Vec<Rgb> {
+        combined(&self.least.left_along_basis(), &self.basis, self.basis[0].len())
+    }
+}
+
+/// Σ share_k vector_k.
+fn combined(shares: &[Rgb], vectors: &[Vec<Rgb>], length: usize) -> Vec<Rgb> {
+    let mut sum = vec![[0.0; 3]; length];
+    for (&share, vector) in shares.iter().zip(vectors) {
+        sum.iter_mut().zip(vector).for_each(|(sum, &v)| *sum = added(*sum, scaled(share, v)));
+    }
+    sum
 }
 
 /// Take the components along `basis` out of `w` (modified Gram-Schmidt, twice) and return them.
@@ -141,5 +198,17 @@ impl LeastSquares {
             }
         }
         y
+    }
+
+    /// β e₁ − H y for the best y: what the rotations left in the last place, turned back.
+    fn left_along_basis(&self) -> Vec<Rgb> {
+        let mut left = vec![[0.0; 3]; self.rotations.len() + 1];
+        left[self.rotations.len()] = self.residual;
+        for (k, &(cos, sin)) in self.rotations.iter().enumerate().rev() {
+            let (upper, lower) = (left[k], left[k + 1]);
+            left[k] = subtract(scaled(cos, upper), scaled(sin, lower));
+            left[k + 1] = added(scaled(sin, upper), scaled(cos, lower));
+        }
+        left
     }
 }

@@ -4,10 +4,11 @@
 //! q = E alone for the local equilibrium, q = E + ρ × (irradiance from other parts) during the exchange. Out comes
 //! the radiosity B. All four solvers stop at rounding, so the answer does not depend on the choice.
 
-mod direct;
+pub mod direct;
 pub mod endless;
 mod gauss_seidel;
 pub mod krylov;
+pub mod outside;
 mod progressive;
 
 use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
@@ -70,19 +71,31 @@ impl<'a> LocalSystem<'a> {
         }
     }
 
+    /// A B near that solution, and what it leaves of the sources; both W/m². Solvers that have no way to stop early leave
+    /// nothing but rounding, and say so. `share` is what may be left.
+    pub fn solve_roughly(&self, sources: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
+        let nothing = vec![[0.0; 3]; sources.len()];
+        match self.solver {
+            LocalSolver::Iterative => krylov::roughly(|b| self.without_reflection(b), sources, share),
+            _ => (self.solve(sources, &nothing), nothing),
+        }
+    }
+
     /// F B of the part on its own, W/m².
     pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
         apply(self.block, &self.clusters.means(radiosity))
     }
 
     fn iterate(&self, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
-        let without_reflection = |b: &[Rgb]| -> Vec<Rgb> {
-            let irradiance = self.irradiance(b);
-            (0..b.len()).map(|i| subtract(b[i], scaled(self.reflectance[i], irradiance[i]))).collect()
-        };
         let mut solution = guess.to_vec();
-        krylov::gmres(without_reflection, |r| r.to_vec(), sources, &mut solution, ROUNDING);
+        krylov::gmres(|b| self.without_reflection(b), |r| r.to_vec(), sources, &mut solution, ROUNDING);
         solution
+    }
+
+    /// (I − ρF) B.
+    fn without_reflection(&self, b: &[Rgb]) -> Vec<Rgb> {
+        let irradiance = self.irradiance(b);
+        (0..b.len()).map(|i| subtract(b[i], scaled(self.reflectance[i], irradiance[i]))).collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! The light file: optics, local equilibrium, and the factors of the direct solver.
 
 use super::{Stored, array_of, check, finite_array, finite_rows};
-use crate::baked::{BakedLight, Factors, LocalEquilibrium, Lu};
+use crate::baked::{Answers, BakedLight, Factors, LocalEquilibrium, Lu};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
@@ -14,6 +14,8 @@ use serde::{Deserialize, Serialize};
 struct Meta {
     solver: LocalSolver,
     factors: Option<FactorsMeta>,
+    answers: usize,
+    returned: Rgb,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -29,7 +31,13 @@ impl Stored for BakedLight {
         let factors = self.local.factors.as_ref();
         let factors_meta =
             factors.map(|f| FactorsMeta { channels: f.channels.len(), of_channel: f.of_channel });
-        let meta = Meta { solver: self.local.solver, factors: factors_meta };
+        let answers = &self.local.answers;
+        let meta = Meta {
+            solver: self.local.solver,
+            factors: factors_meta,
+            answers: answers.radiosity.len(),
+            returned: answers.returned,
+        };
         let mut writer = Writer::new(Self::KIND, manifest, &meta);
         writer.array("reflectance", self.optics.reflectance.as_flattened());
         writer.array("emission", self.optics.emission.as_flattened());
@@ -38,6 +46,10 @@ impl Stored for BakedLight {
             writer.array(&factors_name(i), &lu.packed);
             writer.array(&permutation_name(i), &lu.rows);
         }
+        for (i, radiosity) in answers.radiosity.iter().enumerate() {
+            writer.array(&answer_name(i), radiosity.as_flattened());
+        }
+        writer.array("answers' matrix", answers.matrix.as_flattened());
         writer
     }
 
@@ -47,8 +59,10 @@ impl Stored for BakedLight {
         let elements = reflectance.len();
         let emission = one_an_element(reader, "emission", elements)?;
         let radiosity = one_an_element(reader, "radiosity", elements)?;
-        let factors = meta.factors.map(|factors| read_factors(reader, &factors, elements)).transpose()?;
-        let local = LocalEquilibrium { solver: meta.solver, radiosity, factors };
+        let factors =
+            meta.factors.as_ref().map(|factors| read_factors(reader, factors, elements)).transpose()?;
+        let answers = read_answers(reader, &meta, elements)?;
+        let local = LocalEquilibrium { solver: meta.solver, radiosity, factors, answers };
         Ok(Self { optics: Optics { reflectance, emission }, local })
     }
 }
@@ -59,6 +73,24 @@ fn factors_name(channel: usize) -> String {
 
 fn permutation_name(channel: usize) -> String {
     format!("permutation {channel}")
+}
+
+fn answer_name(number: usize) -> String {
+    format!("answer {number}")
+}
+
+fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<Answers> {
+    let of = |number| one_an_element(reader, &answer_name(number), elements);
+    let radiosity: Vec<Vec<Rgb>> = (0..meta.answers).map(of).collect::<Result<_>>()?;
+    let matrix = finite_rows::<3>(reader, "answers' matrix")?;
+    let pairs = radiosity.len() * radiosity.len();
+    check(reader, matrix.len() == pairs, || {
+        format!("{} entries for {pairs} pairs of answers", matrix.len())
+    })?;
+    check(reader, meta.returned.iter().all(|share| share.is_finite()), || {
+        "a share that is no number".into()
+    })?;
+    Ok(Answers { radiosity, matrix, returned: meta.returned })
 }
 
 fn one_an_element(reader: &mut Reader, name: &str, elements: usize) -> Result<Vec<Rgb>> {

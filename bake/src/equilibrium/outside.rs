@@ -1,0 +1,100 @@
+//! How a part answers light from outside. In go the part's equation and geometry; out come its radiosities under a few
+//! simple lights, which the exchange between parts uses as a coarse space.
+//!
+//! What a receiver does not see of its own part, 1 − Σ_j F_ij, may send light from outside. That light is taken as uniform,
+//! as linear in the receiver's place, and as linear in the direction it faces, seven lights in all. Whatever other parts
+//! there are, the slow light between them, which goes to and fro many times, is smooth and hardly differs from a sum of
+//! the answers to these. Local responses as a coarse space: Dryja & Widlund 1994; Spillane et al. 2014 for slow modes.
+
+use super::{LocalSystem, added, scaled};
+use equilux_formats::{Answers, Element, Geometry, Rgb};
+use glam::DVec3;
+
+/// What may be left of a source when its answer is taken: the answers guide the exchange, they are not its result.
+const ROUGH: f64 = 1e-2;
+
+/// An answer that differs by less than this share of itself from a sum of those before it adds nothing.
+const NEW: f64 = 1e-3;
+
+/// A receiver that sees its own part but for this share sees nothing else: that is the rounding of its row's sum.
+const CLOSED: f64 = 1e-12;
+
+/// A light, as the irradiance of an element to which all is open.
+type Light = Box<dyn Fn(&Element) -> f64>;
+
+/// The answers of a part with this system and geometry; none if nothing from outside can arrive, or none of it stays.
+pub fn answers(system: &LocalSystem, geometry: &Geometry) -> Answers {
+    let areas: Vec<f64> = geometry.elements.iter().map(|element| element.area).collect();
+    let open: Vec<f64> = (0..areas.len()).map(|i| open(1.0 - system.block.row_sum(i))).collect();
+    let mut answers = Answers::default();
+    for (number, light) in lights(&geometry.elements).into_iter().enumerate() {
+        let reflected =
+            |i: usize| -> Rgb { scaled(system.reflectance[i], [open[i] * light(&geometry.elements[i]); 3]) };
+        let sources: Vec<Rgb> = (0..areas.len()).map(reflected).collect();
+        if sources.iter().all(|source| *source == [0.0; 3]) {
+            continue;
+        }
+        let (radiosity, _) = system.solve_roughly(&sources, ROUGH);
+        if number == 0 {
+            answers.returned = returned(&areas, &open, &radiosity);
+        }
+        answers.radiosity.extend(orthonormal(radiosity, &answers.radiosity, &areas));
+    }
+    let images: Vec<Vec<Rgb>> = answers.radiosity.iter().map(|b| system.without_reflection(b)).collect();
+    let pairs = answers.radiosity.iter().flat_map(|a| images.iter().map(|b| product(a, b, &areas)));
+    answers.matrix = pairs.collect();
+    answers
+}
+
+fn open(share: f64) -> f64 {
+    if share > CLOSED { share } else { 0.0 }
+}
+
+/// The seven lights.
+fn lights(elements: &[Element]) -> Vec<Light> {
+    let centroids = elements.iter().map(|element| element.centroid);
+    let (low, high) =
+        centroids.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    let (centre, extent) = ((low + high) / 2.0, (high - low).max_element().max(f64::MIN_POSITIVE) / 2.0);
+    let mut lights: Vec<Light> = vec![Box::new(|_| 1.0)];
+    for axis in 0..3 {
+        lights.push(Box::new(move |element| (element.centroid[axis] - centre[axis]) / extent));
+        lights.push(Box::new(move |element| element.normal[axis]));
+    }
+    lights
+}
+
+/// Of the power that uniform light brings in, the share that goes out again: by reciprocity, an element sends out what it
+/// would receive.
+fn returned(areas: &[f64], open: &[f64], radiosity: &[Rgb]) -> Rgb {
+    let arriving: f64 = areas.iter().zip(open).map(|(area, open)| area * open).sum();
+    let weights = areas.iter().zip(open).map(|(area, open)| area * open / arriving);
+    weights.zip(radiosity).fold([0.0; 3], |sum, (weight, b)| added(sum, b.map(|b| b * weight)))
+}
+
+/// What is new in `vector` compared with `basis`, of length one in each channel; zeros in a channel in which nothing is,
+/// none if that are all.
+fn orthonormal(mut vector: Vec<Rgb>, basis: &[Vec<Rgb>], areas: &[f64]) -> Option<Vec<Rgb>> {
+    let before = product(&vector, &vector, areas).map(f64::sqrt);
+    // Twice is enough: Giraud, Langou & Rozložník 2005.
+    for _ in 0..2 {
+        for known in basis {
+            let along = product(&vector, known, areas);
+            let pairs = vector.iter_mut().zip(known);
+            pairs.for_each(|(v, &k)| *v = std::array::from_fn(|c| v[c] - along[c] * k[c]));
+        }
+    }
+    let length = product(&vector, &vector, areas).map(f64::sqrt);
+    let is_new = |c: usize| length[c] > NEW * before[c] && length[c].is_finite();
+    let share = std::array::from_fn(|c| if is_new(c) { 1.0 / length[c] } else { 0.0 });
+    vector
+        .iter_mut()
+        .for_each(|v| *v = std::array::from_fn(|c| if share[c] > 0.0 { v[c] * share[c] } else { 0.0 }));
+    (share != [0.0; 3]).then_some(vector)
+}
+
+/// Σ_i A_i a_i b_i, channel by channel.
+fn product(a: &[Rgb], b: &[Rgb], areas: &[f64]) -> Rgb {
+    let terms = areas.iter().zip(a.iter().zip(b));
+    terms.fold([0.0; 3], |sum, (area, (&a, &b))| added(sum, scaled(a, b).map(|ab| ab * area)))
+}
