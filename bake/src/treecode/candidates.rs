@@ -4,6 +4,7 @@
 use super::viewers::{Viewers, box_corners};
 use crate::form_factor::wide::vectorised;
 use crate::occluders::{Shape, Together};
+use crate::planes::FLATNESS;
 use crate::shaft::Shaft;
 use crate::visibility::Inside;
 use crate::world::{Node, World};
@@ -39,8 +40,9 @@ pub enum Verdict {
 /// Boxes larger than this share of receivers or sender are opened: smaller ones would only lengthen the list.
 const OPEN_ABOVE: f64 = 0.5;
 
-/// What is nearer to a face than this, relative to its extent or distance, may be part of it.
-const ON_FACE: f64 = 1e-9;
+/// What is nearer to a face than this, relative to its extent or distance, may be part of it: its own elements are as far
+/// from it as corners that are kept in f32 may be from their plane.
+const ON_FACE: f64 = 4.0 * FLATNESS;
 
 /// Up to this many faces of a mesh hide one by one, which shows when one of them hides everything; more hide together.
 const FEW: usize = 8;
