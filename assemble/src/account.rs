@@ -1,27 +1,13 @@
-//! Sums over the whole scene: energy, row sums, memory, and light that never ends.
+//! Sums over the whole scene: means, row sums, and light that never ends.
 
 use crate::exchange::Node;
 use crate::placed::Placed;
 use crate::proof::enclosure::{Kept, is_compressed};
-use crate::report::{Defect, Energy};
+use crate::report::Defect;
 use equilux_bake::equilibrium::added;
 use equilux_bake::equilibrium::endless::endless_light;
 use equilux_formats::{Error, Optics, Result, Rgb};
 use std::path::Path;
-
-/// The energy account of a state.
-pub fn energy(placed: &Placed, optics: &Optics, radiosity: &[Rgb], irradiance: &[Rgb]) -> Energy {
-    let mut account = Energy::default();
-    for (i, element) in placed.world.elements.iter().enumerate() {
-        for c in 0..3 {
-            let absorbed = (1.0 - optics.reflectance[i][c]) * irradiance[i][c];
-            account.emitted[c] += element.area * optics.emission[i][c];
-            account.absorbed[c] += element.area * absorbed;
-            account.escaped[c] += element.area * (radiosity[i][c] - irradiance[i][c]);
-        }
-    }
-    account
-}
 
 /// The mean over the scene's area, channel by channel.
 pub fn mean_over_area(placed: &Placed, values: &[Rgb]) -> Rgb {

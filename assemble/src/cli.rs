@@ -41,8 +41,8 @@ struct Assembly {
     /// 16, 32, 64 and so on, and of the last; the result as a picture and as a model
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
-    /// In which order parts hear of each other
-    #[arg(long, value_name = "METHOD", default_value = "jacobi")]
+    /// How parts exchange light
+    #[arg(long, value_name = "METHOD", default_value = "auto")]
     exchange: Exchange,
     /// At most this many rounds
     #[arg(long, value_name = "N")]
@@ -69,10 +69,14 @@ struct Assembly {
 /// The exchange's name on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Exchange {
+    /// GMRES, with a coarse space where light goes to and fro for long
+    Auto,
     /// All parts at once, as the paper does
     Jacobi,
     /// One part after the other, with the newest light
     GaussSeidel,
+    /// GMRES, always with a coarse space of the parts' answers to light from outside
+    Gmres,
 }
 
 const EXAMPLES: &str = "\
@@ -131,8 +135,10 @@ impl Assembly {
             out: self.out.clone(),
             preparation: self.options.preparation(),
             method: match self.exchange {
+                Exchange::Auto => Method::Auto,
                 Exchange::Jacobi => Method::Jacobi,
                 Exchange::GaussSeidel => Method::GaussSeidel,
+                Exchange::Gmres => Method::Gmres,
             },
             goal: Goal {
                 error: self.error.unwrap_or(default_error),

@@ -66,7 +66,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let optics = whole_optics(&placed);
     let nodes = nodes(&placed, &coupled, &each);
     refuse_endless_light(&placed, &nodes, &optics, &job.scene)?;
-    let outcome = exchange(&nodes, job.method, job.goal, monitor);
+    let outcome = exchange(&nodes, job.method, job.goal, None, monitor);
     let proof = prove(&placed, &nodes, &outcome, job.exact_rows, monitor);
     let peak = peak_rss();
     let classic = if job.verify { classic(&placed, monitor) } else { None };

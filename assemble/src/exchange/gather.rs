@@ -22,14 +22,15 @@ impl Active {
         Self { own: of(node.self_block), coupling: of(node.coupling) }
     }
 
-    /// Every group.
-    pub fn all(node: &Node) -> Self {
-        Self { own: vec![true; node.self_block.groups()], coupling: vec![true; node.coupling.groups()] }
+    /// All other groups.
+    pub fn inactive(&self) -> Self {
+        let inverse = |active: &[bool]| active.iter().map(|active| !active).collect();
+        Self { own: inverse(&self.own), coupling: inverse(&self.coupling) }
     }
 
-    /// Irradiance from the instance itself, W/m²; zero for those who wait.
-    pub fn own_irradiance(&self, node: &Node, radiosity: &[Rgb]) -> Vec<Rgb> {
-        gather(node.self_block, &self.own, &node.clusters.means(radiosity))
+    /// Irradiance from the instance itself, W/m², of which the radiosity of its nodes is given; zero for those who wait.
+    pub fn own_irradiance(&self, node: &Node, own: &[Rgb]) -> Vec<Rgb> {
+        gather(node.self_block, &self.own, own)
     }
 
     /// Irradiance from all other instances, W/m², of which the radiosity of all nodes is given; zero for those who wait.

@@ -2,31 +2,44 @@
 //!
 //! B_k ← (I − ρF_kk)⁻¹ (E_k + ρ Σ_{l≠k} F_kl B_l). Debelov & Sevastyanov, §2.2.
 
-pub mod bound;
+mod bound;
+pub mod coarse;
+pub mod energy;
 mod gather;
+mod groups;
+mod rounds;
 mod sweep;
+mod whole;
 
 use crate::coupling::Coupled;
 use crate::placed::Placed;
-use bound::{Margin, residual};
-use equilux_bake::equilibrium::{LocalSystem, added, largest, scaled};
+use energy::Energy;
+use equilux_bake::equilibrium::{LocalSystem, added, scaled, subtract};
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
-use std::time::{Duration, Instant};
+use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
+use groups::groups;
+use rounds::Course;
+use std::time::Duration;
+use whole::Whole;
 
-/// In which order parts hear of each other.
+/// How parts exchange light.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
+    /// As `Gmres`, but without the coarse space where parts return so little light that few rounds do.
+    Auto,
     /// All parts at once, each with what the others had a round ago: the paper's form.
     Jacobi,
     /// One part after the other, each with the newest of the others.
     GaussSeidel,
+    /// Flexible GMRES, preconditioned by parts that take turns and by a coarse space of their answers to light from outside.
+    Gmres,
 }
 
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The error bound asked for, relative to the brightest radiosity; 0 asks for all that rounding allows.
+    /// The error bound asked for, relative to the brightest radiosity in each channel of each group of parts that exchange
+    /// light; 0 asks for all that rounding allows.
     pub error: f64,
     /// At most this many rounds.
     pub rounds: usize,
@@ -44,23 +57,37 @@ pub struct Node<'a> {
     pub coupling: &'a Rows,
     /// Solves the instance on its own.
     pub local: LocalSystem<'a>,
+    /// How it answers light from outside.
+    pub answers: &'a Answers,
+    /// Area of its elements in the scene, m².
+    pub areas: Vec<f64>,
 }
 
-/// What a round left behind.
+/// What a round left behind. Parts that exchange no light with each other have rounds of their own, which are counted
+/// together.
 #[derive(Debug, Clone)]
 pub struct Round {
     /// 1 for the first.
     pub number: usize,
-    /// Largest residual, W/m².
-    pub residual: f64,
-    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m².
-    pub error_bound: f64,
-    /// The bound over the brightest radiosity.
-    pub relative_bound: f64,
+    /// What is known of the light after it.
+    pub known: Known,
     /// Wall time of the round.
     pub time: Duration,
     /// Radiosity of all elements after the round, if there is to be a picture of it.
     pub radiosity: Option<Vec<Rgb>>,
+}
+
+/// What is known of light on its way to equilibrium.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Known {
+    /// Largest residual, W/m².
+    pub residual: f64,
+    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m².
+    pub error_bound: f64,
+    /// The bound over the brightest radiosity of the same group of parts and the same channel, the worst of all.
+    pub relative_bound: f64,
+    /// Where the power is.
+    pub energy: Energy,
 }
 
 /// Time spent in the paper's steps 5 and 6 (local solves) and 7 and 8 (transfers), one entry an instance.
@@ -72,20 +99,36 @@ pub struct StepTimes {
     pub transfer: Vec<Duration>,
 }
 
+impl StepTimes {
+    /// No time in so many instances.
+    pub fn none(instances: usize) -> Self {
+        let none = vec![Duration::ZERO; instances];
+        Self { solve: none.clone(), transfer: none }
+    }
+}
+
 /// The light in the end.
 pub struct Outcome {
     /// Radiosity of all elements.
     pub radiosity: Vec<Rgb>,
     /// Irradiance of all elements.
     pub irradiance: Vec<Rgb>,
-    /// The rounds.
+    /// The rounds; none if the light to start from already was within the bound.
     pub rounds: Vec<Round>,
+    /// What is known of the light in the end.
+    pub known: Known,
     /// Where time went.
     pub times: StepTimes,
     /// Whether the goal was met.
     pub converged: bool,
     /// What the rounds did not have to do.
     pub spared: Spared,
+    /// Unknowns of the coarse space, all groups together.
+    pub coarse_unknowns: usize,
+    /// Number of groups of parts that exchange no light with each other.
+    pub groups: usize,
+    /// Least and largest share of what an element sends that arrives somewhere.
+    pub column_sums: [f64; 2],
 }
 
 /// What changes no radiosity and was left out of the rounds.
@@ -95,12 +138,9 @@ pub struct Spared {
     pub black_rows: usize,
     /// Local equilibria of instances in which nothing shone, all rounds together.
     pub dark_solves: usize,
+    /// Coarse spaces of groups of parts that return so little light that few rounds do without.
+    pub coarse_spaces: usize,
 }
-
-/// Rounding is reached when the bound is below the first number, relative to the brightest radiosity, and at least the
-/// third number of rounds before it was hardly larger (by the second). The bound of block Jacobi may rise and fall by
-/// turns, so the last round alone tells nothing.
-const STALLED: (f64, f64, usize) = (1e-9, 0.95, 3);
 
 /// The instances' shares of the equation.
 pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics]) -> Vec<Node<'a>> {
@@ -108,67 +148,52 @@ pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics
         .map(|k| {
             let part = &placed.part_of(k).part;
             let self_block = coupled[k].self_block(&part.self_block);
-            let factors = coupled[k].factors(&part.local);
+            let answered = coupled[k].local(&part.local);
             let local = LocalSystem::new(
                 self_block,
                 &part.geometry.clusters,
                 &optics[k].reflectance,
                 part.local.solver,
-                factors,
+                answered.factors.as_ref(),
             );
+            let elements = &placed.world.elements[placed.world.elements_of(k)];
             Node {
                 optics: optics[k].clone(),
                 self_block,
                 clusters: &part.geometry.clusters,
                 coupling: &coupled[k].coupling,
                 local,
+                answers: &answered.answers,
+                areas: elements.iter().map(|element| element.area).collect(),
             }
         })
         .collect()
 }
 
-/// Exchange light until the goal is met, no progress is possible, or somebody stops it. Starts from darkness, as the
-/// paper does.
-pub fn exchange(nodes: &[Node], method: Method, goal: Goal, monitor: &Monitor) -> Outcome {
-    let margin = Margin::of(nodes);
-    let mut state = sweep::State::dark(nodes);
-    let mut rounds: Vec<Round> = Vec::new();
-    let mut times =
-        StepTimes { solve: vec![Duration::ZERO; nodes.len()], transfer: vec![Duration::ZERO; nodes.len()] };
-    let mut converged = false;
+/// Exchange light until the goal is met, no progress is possible, or somebody stops it. Starts from `start`, one vector
+/// of radiosities an instance, or from darkness, as the paper does.
+pub fn exchange(
+    nodes: &[Node],
+    method: Method,
+    goal: Goal,
+    start: Option<&[Vec<Rgb>]>,
+    monitor: &Monitor,
+) -> Outcome {
+    let groups = groups(nodes);
+    let mut times = StepTimes::none(nodes.len());
+    let mut whole = Whole::new(nodes);
     monitor.begin("exchange", 0);
-    while rounds.len() < goal.rounds && !converged && !monitor.stopped() {
-        let start = Instant::now();
-        match method {
-            Method::Jacobi => state.jacobi(&mut times),
-            Method::GaussSeidel => state.gauss_seidel(&mut times),
-        }
-        let residual = residual(nodes, &state.radiosity, &state.irradiance());
-        let error_bound = margin.bound(&residual);
-        let brightest = largest(&state.flat()).into_iter().fold(0.0, f64::max);
-        let relative_bound = if error_bound == 0.0 { 0.0 } else { error_bound / brightest };
-        converged = relative_bound <= goal.error;
-        let stalled = has_stalled(&rounds, relative_bound);
-        if let Some(before) = rounds.last_mut().filter(|round| !is_shown(round.number)) {
-            before.radiosity = None;
-        }
-        rounds.push(Round {
-            number: rounds.len() + 1,
-            residual: residual.iter().flatten().flatten().fold(0.0, |most: f64, r| most.max(r.abs())),
-            error_bound,
-            relative_bound,
-            time: start.elapsed(),
-            radiosity: Some(state.flat()),
-        });
-        monitor.advance(1);
-        if stalled {
-            converged = goal.error == 0.0;
-            break;
-        }
+    for group in &groups {
+        let course = Course::new(group, method, goal);
+        let column_sums = course.column_sums();
+        let start = start.map(|start| group.members.iter().flat_map(|&k| start[k].clone()).collect());
+        let outcome = course.run(start, goal, &mut times, monitor);
+        let without = method == Method::Auto && group.members.len() > 1 && outcome.coarse == 0;
+        whole.spared.black_rows += group.waiting();
+        whole.spared.coarse_spaces += usize::from(without);
+        whole.take(&group.members, column_sums, outcome);
     }
-    let spared = Spared { black_rows: state.waiting(), dark_solves: state.idle };
-    let irradiance = state.whole_irradiance().concat();
-    Outcome { radiosity: state.flat(), irradiance, rounds, times, converged, spared }
+    whole.outcome(times)
 }
 
 /// Whether there is to be a picture of this round even if it is not the last: of the first eight, then of powers of two.
@@ -176,14 +201,15 @@ fn is_shown(round: usize) -> bool {
     round <= 8 || round.is_power_of_two()
 }
 
-fn has_stalled(rounds: &[Round], bound: f64) -> bool {
-    let (small, share, back) = STALLED;
-    let earlier = &rounds[..rounds.len().saturating_sub(back)];
-    bound < small && earlier.iter().any(|round| bound > share * round.relative_bound)
-}
-
-/// E + ρ × irradiance.
-fn sources(optics: &Optics, arriving: &[Rgb]) -> Vec<Rgb> {
-    let reflected = optics.reflectance.iter().zip(arriving).map(|(&rho, &h)| scaled(rho, h));
-    optics.emission.iter().zip(reflected).map(|(&e, r)| added(e, r)).collect()
+/// r = E + ρH − B with the irradiance H of that B, W/m², one vector an instance.
+pub fn residual(nodes: &[Node], radiosity: &[Vec<Rgb>], irradiance: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
+    let of = |node: &Node, b: &[Rgb], h: &[Rgb]| -> Vec<Rgb> {
+        (0..b.len())
+            .map(|i| {
+                let right = added(node.optics.emission[i], scaled(node.optics.reflectance[i], h[i]));
+                subtract(right, b[i])
+            })
+            .collect()
+    };
+    nodes.iter().zip(radiosity).zip(irradiance).map(|((node, b), h)| of(node, b, h)).collect()
 }

@@ -1,118 +1,129 @@
-//! One round of the exchange: transfers (steps 7, 8) and local equilibria (steps 5, 6).
+//! One round of the exchange: equilibria of the parts (steps 5, 6 of the paper) and transfers (7, 8). In goes what the
+//! equation misses, v; out come a correction z that every part answers it with, and A z.
+//!
+//! Parts take turns. In its turn a part solves (I − ρF_kk) z_k = v_k + ρ Σ_{l≠k} F_kl z_l with the newest z_l. With one turn
+//! for all that is block Jacobi, with one turn each block Gauss-Seidel. Only transfers are needed for A z then: its own
+//! part of each row is what was just solved.
 
-use super::gather::Active;
-use super::{Node, StepTimes, sources};
-use equilux_bake::equilibrium::added;
+use super::StepTimes;
+use super::groups::Group;
+use equilux_bake::equilibrium::{added, scaled};
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// The light on its way.
-pub struct State<'a> {
-    nodes: &'a [Node<'a>],
-    /// Who takes part in the rounds, one entry an instance.
-    active: Vec<Active>,
-    /// Radiosity, one vector an instance.
-    pub radiosity: Vec<Vec<Rgb>>,
-    /// Irradiance from other instances, as of the last transfer.
-    arriving: Vec<Vec<Rgb>>,
+/// Who is solved when, and how exactly.
+pub struct Sweep<'a> {
+    group: &'a Group<'a>,
+    /// The turn of each member.
+    turns: Vec<usize>,
+    /// What a local solver may leave of its sources; none for rounding.
+    share: Option<f64>,
     /// Local equilibria that were not asked for, because nothing shone in the instance.
     pub idle: usize,
 }
 
-impl<'a> State<'a> {
-    /// No light anywhere, and none on its way.
-    pub fn dark(nodes: &'a [Node<'a>]) -> Self {
-        let dark: Vec<Vec<Rgb>> = nodes.iter().map(|n| vec![[0.0; 3]; n.optics.emission.len()]).collect();
-        let active = nodes.iter().map(Active::of).collect();
-        Self { nodes, active, radiosity: dark.clone(), arriving: dark, idle: 0 }
-    }
-
-    /// All radiosities, instance after instance.
-    pub fn flat(&self) -> Vec<Rgb> {
-        self.radiosity.concat()
-    }
-
-    /// Number of rows that wait for the end.
-    pub fn waiting(&self) -> usize {
-        self.nodes.iter().zip(&self.active).map(|(node, active)| active.waiting(node)).sum()
-    }
-
-    /// Every part to its equilibrium with what arrived, then every transfer.
-    pub fn jacobi(&mut self, times: &mut StepTimes) {
-        let solve = |(k, arriving): (usize, &Vec<Rgb>)| timed(|| self.solved(k, arriving));
-        let solved: Vec<_> = self.arriving.par_iter().enumerate().map(solve).collect();
-        for (k, (solved, time)) in solved.into_iter().enumerate() {
-            self.settle(k, solved);
-            times.solve[k] += time;
-        }
-        let transfers = self.transfer();
-        times.transfer.iter_mut().zip(transfers).for_each(|(total, time)| *total += time);
-    }
-
-    /// One part after the other, each with the newest light of all others.
-    pub fn gauss_seidel(&mut self, times: &mut StepTimes) {
-        for (k, node) in self.nodes.iter().enumerate() {
-            let all = self.all();
-            let (arriving, time) = timed(|| self.active[k].coupled_irradiance(node, &all));
-            times.transfer[k] += time;
-            let (solved, time) = timed(|| self.solved(k, &arriving));
-            times.solve[k] += time;
-            self.settle(k, solved);
-        }
-        // The bound needs what arrives everywhere at one time; the method itself does not, so it is not counted.
-        self.transfer();
-    }
-
-    /// The instance's equilibrium with what arrives; none if nothing does and nothing in it shines.
-    fn solved(&self, instance: usize, arriving: &[Rgb]) -> Option<Vec<Rgb>> {
-        let node = &self.nodes[instance];
-        let sources = sources(&node.optics, arriving);
-        let shines = sources.iter().any(|source| *source != [0.0; 3]);
-        shines.then(|| node.local.solve(&sources, &self.radiosity[instance]))
-    }
-
-    fn settle(&mut self, instance: usize, solved: Option<Vec<Rgb>>) {
-        self.idle += usize::from(solved.is_none());
-        let dark = || vec![[0.0; 3]; self.radiosity[instance].len()];
-        self.radiosity[instance] = solved.unwrap_or_else(dark);
-    }
-
-    /// The radiosity of all nodes of the scene.
-    fn all(&self) -> Vec<Rgb> {
-        let mut all = Vec::new();
-        self.nodes.iter().zip(&self.radiosity).for_each(|(node, b)| node.clusters.append_means(b, &mut all));
-        all
-    }
-
-    fn transfer(&mut self) -> Vec<Duration> {
-        let all = self.all();
-        let receivers = self.nodes.iter().zip(&self.active);
-        let arrived = receivers.map(|(node, active)| timed(|| active.coupled_irradiance(node, &all)));
-        let (arriving, times) = arrived.unzip();
-        self.arriving = arriving;
-        times
-    }
-
-    /// Irradiance from all instances, as of the last transfer; zero for those who wait.
-    pub fn irradiance(&self) -> Vec<Vec<Rgb>> {
-        let of = |k: usize| {
-            let own = self.active[k].own_irradiance(&self.nodes[k], &self.radiosity[k]);
-            own.iter().zip(&self.arriving[k]).map(|(&own, &other)| added(own, other)).collect()
-        };
-        (0..self.nodes.len()).map(of).collect()
-    }
-
-    /// The same with those who waited, for the end.
-    pub fn whole_irradiance(&mut self) -> Vec<Vec<Rgb>> {
-        self.active = self.nodes.iter().map(Active::all).collect();
-        self.transfer();
-        self.irradiance()
-    }
+/// What a member found in its turn.
+struct Solved {
+    correction: Vec<Rgb>,
+    /// What the local solver left.
+    left: Vec<Rgb>,
+    idle: bool,
+    time: Duration,
 }
 
-fn timed<T>(work: impl FnOnce() -> T) -> (T, Duration) {
-    let start = Instant::now();
-    let result = work();
-    (result, start.elapsed())
+/// The light of a sweep on its way.
+struct Light {
+    /// The newest corrections, of all senders of the scene.
+    all: Vec<Rgb>,
+    /// Which members have any.
+    lit: Vec<bool>,
+}
+
+impl<'a> Sweep<'a> {
+    /// Members take turns in order, `turns` of them in all; one solves until `share` of its sources is left, or until
+    /// rounding.
+    pub fn new(group: &'a Group<'a>, turns: usize, share: Option<f64>) -> Self {
+        Self { group, turns: (0..group.members.len()).map(|m| m % turns.max(1)).collect(), share, idle: 0 }
+    }
+
+    /// The correction z that starts from `start` (nothing, if none), and A z. Vectors of the group, W/m².
+    pub fn correct(
+        &mut self,
+        missing: &[Rgb],
+        start: Option<Vec<Rgb>>,
+        times: &mut StepTimes,
+    ) -> (Vec<Rgb>, Vec<Rgb>) {
+        let group = self.group;
+        let count = group.members.len();
+        let mut light =
+            Light { all: vec![[0.0; 3]; group.scene_senders()], lit: vec![start.is_some(); count] };
+        let mut correction = start.unwrap_or_else(|| vec![[0.0; 3]; missing.len()]);
+        for member in (0..count).filter(|&m| light.lit[m]) {
+            group.send(member, &correction[group.elements_of(member)], &mut light.all);
+        }
+        let (mut heard, mut left) = (vec![vec![]; count], vec![vec![]; count]);
+        for turn in 0..=self.turns.iter().copied().max().unwrap_or(0) {
+            let now: Vec<usize> = (0..count).filter(|&m| self.turns[m] == turn).collect();
+            for &member in &now {
+                heard[member] = self.hear(member, &light, times);
+            }
+            let solve = |&m: &usize| self.solve(m, &missing[group.elements_of(m)], &heard[m]);
+            let solved: Vec<Solved> = now.par_iter().map(solve).collect();
+            for (&member, solved) in now.iter().zip(solved) {
+                times.solve[group.members[member]] += solved.time;
+                self.idle += usize::from(solved.idle);
+                group.send(member, &solved.correction, &mut light.all);
+                light.lit[member] = !solved.idle;
+                correction[group.elements_of(member)].copy_from_slice(&solved.correction);
+                left[member] = solved.left;
+            }
+        }
+        let image = |m: usize| -> Vec<Rgb> {
+            let missing = missing[group.elements_of(m)].iter().zip(&left[m]);
+            let solved = missing.map(|(&v, &left)| -> Rgb { std::array::from_fn(|c| v[c] - left[c]) });
+            if !self.is_stale(m) {
+                return solved.collect();
+            }
+            let changes = heard[m].iter().zip(self.hear(m, &light, times));
+            let rows = solved.zip(&group.node(m).optics.reflectance).zip(changes);
+            rows.map(|((v, rho), (before, now))| {
+                std::array::from_fn(|c| v[c] + rho[c] * (before[c] - now[c]))
+            })
+            .collect()
+        };
+        let image = (0..count).flat_map(image).collect();
+        (correction, image)
+    }
+
+    /// Irradiance from the other members; nothing is gathered in the dark.
+    fn hear(&self, member: usize, light: &Light, times: &mut StepTimes) -> Vec<Rgb> {
+        if !self.group.sees[member].iter().any(|&sender| light.lit[sender]) {
+            return vec![[0.0; 3]; self.group.elements_of(member).len()];
+        }
+        let start = Instant::now();
+        let arriving = self.group.arriving(member, &light.all);
+        times.transfer[self.group.members[member]] += start.elapsed();
+        arriving
+    }
+
+    /// Whether a member has not heard the newest of what it sees: of those who have the same turn or a later one.
+    fn is_stale(&self, member: usize) -> bool {
+        self.group.sees[member].iter().any(|&sender| self.turns[sender] >= self.turns[member])
+    }
+
+    fn solve(&self, member: usize, missing: &[Rgb], heard: &[Rgb]) -> Solved {
+        let start = Instant::now();
+        let node = self.group.node(member);
+        let rows = missing.iter().zip(&node.optics.reflectance).zip(heard);
+        let sources: Vec<Rgb> = rows.map(|((&v, &rho), &h)| added(v, scaled(rho, h))).collect();
+        let dark = vec![[0.0; 3]; sources.len()];
+        let idle = sources == dark;
+        let (correction, left) = match self.share {
+            _ if idle => (dark.clone(), dark),
+            Some(share) => node.local.solve_roughly(&sources, share),
+            None => (node.local.solve(&sources, &dark), dark),
+        };
+        Solved { correction, left, idle, time: start.elapsed() }
+    }
 }

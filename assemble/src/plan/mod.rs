@@ -1,6 +1,7 @@
 //! What a run would do, before a form factor is computed: the run itself with a monitor that is stopped. What the cache
 //! has, the run's own code finds there; what it has not is not made. In goes a [`Job`]; out comes a [`Plan`].
 
+mod exchange;
 mod text;
 mod unseen;
 
@@ -8,7 +9,7 @@ use crate::coupling::{Coupler, Foreseen};
 use crate::hull::intruders;
 use crate::outputs::check_writable;
 use crate::placed::Placed;
-use crate::report::summary::{BLACK_ROWS, DARK_SOLVES, SHARED, UNSEEN};
+use crate::report::summary::{BLACK_ROWS, SHARED, UNSEEN};
 use crate::run::Job;
 use equilux_bake::batch::damage_notes;
 use equilux_bake::cached::Origin;
@@ -39,6 +40,8 @@ pub struct Plan {
     pub instances: Vec<PlannedInstance>,
     /// Pairs of instances whose faces cannot see each other whatever stands between; walls may hide more.
     pub unseen: Vec<[String; 2]>,
+    /// How parts would exchange light, and why, for a person.
+    pub exchange: String,
     /// What would be left out because it changes no radiosity, and how often at least, by reason.
     pub left_out: BTreeMap<String, usize>,
     /// Bytes of the classic matrix in f64: every element with every other.
@@ -110,6 +113,7 @@ pub fn plan(job: &Job) -> Result<Plan> {
         resolution: resolution.to_string(),
         parts: planned_parts(&prepared, &baked, |part| oven.foresee(part)),
         unseen: unseen.iter().map(|pair| pair.map(name)).collect(),
+        exchange: exchange::planned(job, &prepared, &baked),
         left_out: left_out(&prepared, unseen.len()),
         classic_matrix_bytes: world.elements.len().pow(2) * size_of::<f64>(),
         instances: planned_instances(&prepared, baked, |placed| {
@@ -171,12 +175,10 @@ fn anew(prepared: &Prepared) -> Vec<Foreseen> {
 fn left_out(prepared: &Prepared, unseen: usize) -> BTreeMap<String, usize> {
     let parts = || prepared.instances.iter().map(|instance| &prepared.parts[instance.part.index()]);
     let black = |part: &PreparedPart| part.optics.reflectance.iter().filter(|&&rho| rho == [0.0; 3]).count();
-    let dark = |part: &&PreparedPart| part.optics.emission.iter().all(|&emission| emission == [0.0; 3]);
     let counts = [
         // Each of the two has a coupling.
         (UNSEEN, 2 * unseen),
         (BLACK_ROWS, parts().map(black).sum()),
-        (DARK_SOLVES, parts().filter(dark).count()),
         (SHARED, prepared.instances.len() - prepared.parts.len()),
     ];
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()

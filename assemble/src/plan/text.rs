@@ -22,6 +22,7 @@ impl Plan {
         lines.extend(self.instances.iter().filter_map(corrected_line));
         lines.extend(self.coupling_lines());
         lines.extend(self.unseen.iter().map(|[a, b]| format!("{a} and {b} cannot see each other")));
+        lines.push(format!("exchange: {}", self.exchange));
         lines.extend(left_out_line(&self.left_out));
         lines.push(format!("memory: the classic matrix would take {}", bytes(self.classic_matrix_bytes)));
         lines.extend(self.notes.iter().map(|note| format!("note: {note}")));

@@ -7,8 +7,7 @@ pub mod exact_rows;
 pub mod sample;
 
 use crate::account::mean_over_area;
-use crate::exchange::bound::residual;
-use crate::exchange::{Node, Outcome};
+use crate::exchange::{Node, Outcome, residual};
 use crate::placed::Placed;
 use enclosure::{Kept, is_compressed};
 use equilux_bake::equilibrium::added;

@@ -1,10 +1,12 @@
 //! What a run says about itself: one JSON object for machines, tables for people.
 
+mod notes;
 pub mod summary;
 pub mod text;
 
 pub use summary::{Run, summary};
 
+use crate::exchange::energy::Energy;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -29,6 +31,10 @@ pub struct Report {
     pub seconds: Seconds,
     /// The exchange, round by round.
     pub rounds: Vec<RoundReport>,
+    /// Unknowns of the coarse space in the exchange; 0 if it was left out.
+    pub coarse_unknowns: usize,
+    /// Number of groups of parts that exchange no light with each other.
+    pub groups: usize,
     /// Whether the error asked for is proved, of the exchange with the form factors as they are kept.
     pub converged: bool,
     /// How far the answer is from that of the exact matrix.
@@ -37,6 +43,9 @@ pub struct Report {
     pub bytes: Bytes,
     /// Energy account of the final state.
     pub energy: Energy,
+    /// Least and largest share of what an element sends that arrives somewhere: in a closed scene 1, but for collocation,
+    /// which is exact by rows and not by columns.
+    pub column_sums: [f64; 2],
     /// How far row sums are from one: zero in a closed scene.
     pub row_sum_defect: Defect,
     /// The comparison with the classic matrix, if asked for.
@@ -123,8 +132,12 @@ pub struct RoundReport {
     pub error_bound: f64,
     /// The share of the bound that comes from entries that stand for clusters, W/m²; known after the last round.
     pub compression: f64,
-    /// The bound over the brightest radiosity.
+    /// The bound over the brightest radiosity of the parts that exchange light with each other, the worst of all.
     pub relative_bound: f64,
+    /// Largest difference from the classic solution, W/m², if that was asked for and there is a picture of the round.
+    pub true_error: Option<f64>,
+    /// Where the power is.
+    pub energy: Energy,
     /// Wall time.
     pub seconds: f64,
 }
@@ -174,18 +187,6 @@ pub struct Bytes {
     pub largest_block: usize,
     /// The most the process held, where the system tells; before any verification.
     pub peak_rss: Option<usize>,
-}
-
-/// emitted = absorbed + escaped. Collocation is exact by rows, not in energy: in a closed scene `escaped` is what that
-/// costs.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Energy {
-    /// Σ A E, W.
-    pub emitted: [f64; 3],
-    /// Σ A (1 − ρ) H, W.
-    pub absorbed: [f64; 3],
-    /// Σ A B − Σ A H, W.
-    pub escaped: [f64; 3],
 }
 
 /// Distance of row sums from one.

@@ -1,24 +1,27 @@
 //! From the results of a run to its report.
 
 use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify, peak_rss};
-use crate::account::{energy, rms_over_mean, row_sum_defect};
+use crate::account::{rms_over_mean, row_sum_defect};
 use crate::classic::{Classic, largest_difference, mean_difference};
 use crate::coupling::Coupled;
 use crate::exchange::{Node, Outcome, Round};
 use crate::placed::Placed;
 use crate::proof::{Measured, Proof};
+use crate::report::notes::notes;
 use crate::steps::seconds;
 use equilux_bake::equilibrium::largest;
 use equilux_bake::oven::Baked;
-use equilux_formats::Optics;
+use equilux_formats::{Optics, Rgb};
 use std::collections::BTreeMap;
 
 /// Reasons to leave something out, as they follow a count.
 pub const UNSEEN: &str = "couplings between parts that cannot see each other";
 /// Rows that wait for the end of the exchange.
 pub const BLACK_ROWS: &str = "rows of black receivers in every round, gathered once in the end";
-/// Local equilibria of instances in which nothing shone.
-pub const DARK_SOLVES: &str = "equilibria of parts in the dark";
+/// Local equilibria of instances that had nothing to answer.
+pub const DARK_SOLVES: &str = "equilibria of parts to which nothing new arrived";
+/// Coarse spaces of groups of parts that hardly return light.
+pub const COARSE_SPACES: &str = "coarse spaces between parts that return little light to each other";
 /// Own blocks of instances that another instance of the same part has.
 pub const SHARED: &str = "own blocks that equal parts share";
 
@@ -43,7 +46,7 @@ pub struct Run<'a> {
 
 /// All that the results tell; names, files, and what the system tells are left to the caller.
 pub fn summary(run: &Run) -> Report {
-    let Run { placed, coupled, nodes, optics, outcome, .. } = *run;
+    let Run { placed, coupled, nodes, outcome, .. } = *run;
     let elements = placed.world.elements.len();
     let error = error(run);
     Report {
@@ -55,14 +58,17 @@ pub fn summary(run: &Run) -> Report {
         blocks: blocks(run),
         form_factors_computed: form_factors_computed(placed, coupled),
         seconds: seconds(placed, coupled, &outcome.times),
-        rounds: rounds(outcome, &error),
+        rounds: rounds(run, &error),
+        coarse_unknowns: outcome.coarse_unknowns,
+        groups: outcome.groups,
         converged: outcome.converged,
         error,
         bytes: memory(nodes, elements),
-        energy: energy(placed, optics, &outcome.radiosity, &outcome.irradiance),
+        energy: outcome.known.energy,
+        column_sums: outcome.column_sums,
         row_sum_defect: row_sum_defect(nodes),
         verify: run.classic.map(|classic| verification(placed, classic, outcome)),
-        notes: intruder_notes(placed, coupled),
+        notes: notes(placed, coupled, nodes),
         outputs: vec![],
     }
 }
@@ -78,8 +84,10 @@ fn part_report(baked: &Baked) -> PartReport {
     }
 }
 
-fn rounds(outcome: &Outcome, error: &ErrorReport) -> Vec<RoundReport> {
-    let mut rounds: Vec<RoundReport> = outcome.rounds.iter().map(round_report).collect();
+fn rounds(run: &Run, error: &ErrorReport) -> Vec<RoundReport> {
+    let outcome = run.outcome;
+    let mut rounds: Vec<RoundReport> =
+        outcome.rounds.iter().map(|round| round_report(round, run.classic)).collect();
     if let Some(last) = rounds.last_mut().filter(|_| error.spread.is_some()) {
         let brightest = largest(&outcome.radiosity).into_iter().fold(0.0, f64::max);
         last.compression = (error.proved - last.error_bound).max(0.0);
@@ -89,13 +97,16 @@ fn rounds(outcome: &Outcome, error: &ErrorReport) -> Vec<RoundReport> {
     rounds
 }
 
-fn round_report(round: &Round) -> RoundReport {
+fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
+    let off = classic.zip(round.radiosity.as_ref()).map(|(classic, b)| most_off(b, &classic.radiosity));
     RoundReport {
         round: round.number,
-        residual: round.residual,
-        error_bound: round.error_bound,
+        residual: round.known.residual,
+        error_bound: round.known.error_bound,
         compression: 0.0,
-        relative_bound: round.relative_bound,
+        relative_bound: round.known.relative_bound,
+        true_error: off,
+        energy: round.known.energy,
         seconds: round.time.as_secs_f64(),
     }
 }
@@ -104,7 +115,7 @@ fn error(run: &Run) -> ErrorReport {
     let (placed, radiosity) = (run.placed, &run.outcome.radiosity);
     let most = |bound: &[[f64; 3]]| largest(bound).into_iter().fold(0.0, f64::max);
     let Some(proof) = run.proof else {
-        let proved = run.outcome.rounds.last().map_or(f64::INFINITY, |round| round.error_bound);
+        let proved = run.outcome.known.error_bound;
         let everywhere = vec![[proved; 3]; radiosity.len()];
         let proved_rms = rms_over_mean(placed, &everywhere, radiosity);
         return ErrorReport { proved, proved_rms, proved_from: "rounds", spread: None, exact_rows: None };
@@ -160,6 +171,7 @@ fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
         (UNSEEN, unseen),
         (BLACK_ROWS, spared.black_rows),
         (DARK_SOLVES, spared.dark_solves),
+        (COARSE_SPACES, spared.coarse_spaces),
         (SHARED, shared),
     ];
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
@@ -195,11 +207,10 @@ fn memory(nodes: &[Node], elements: usize) -> Bytes {
 }
 
 fn verification(placed: &Placed, classic: &Classic, outcome: &Outcome) -> Verify {
-    let pairs = outcome.radiosity.iter().flatten().zip(classic.radiosity.iter().flatten());
     Verify {
         max_rel_diff: largest_difference(&outcome.radiosity, &classic.radiosity),
         rms_rel_diff: mean_difference(placed, &outcome.radiosity, &classic.radiosity),
-        max_abs_diff: pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
+        max_abs_diff: most_off(&outcome.radiosity, &classic.radiosity),
         form_factor_seconds: classic.form_factor_time.as_secs_f64(),
         solve_seconds: classic.solve_time.as_secs_f64(),
         matrix_bytes: classic.matrix.bytes(),
@@ -207,14 +218,8 @@ fn verification(placed: &Placed, classic: &Classic, outcome: &Outcome) -> Verify
     }
 }
 
-fn intruder_notes(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
-    let name = |k: usize| format!("`{}`", placed.instances[k].name);
-    let note = |(k, own): (usize, &Coupled)| {
-        let corrected = own.corrected.as_ref()?;
-        let inside: Vec<String> = corrected.intruders.iter().map(|&i| name(i)).collect();
-        let how =
-            if corrected.origin.is_reused() { "taken corrected from the cache" } else { "computed anew" };
-        Some(format!("inside {} is {}: its own block was {how}", name(k), inside.join(", ")))
-    };
-    coupled.iter().enumerate().filter_map(note).collect()
+/// The largest difference, W/m².
+fn most_off(a: &[Rgb], b: &[Rgb]) -> f64 {
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

@@ -1,6 +1,6 @@
 //! The report for a person.
 
-use super::{ErrorReport, Report};
+use super::{ErrorReport, Report, RoundReport};
 use std::collections::BTreeMap;
 
 impl Report {
@@ -33,10 +33,16 @@ impl Report {
             self.bytes.peak_rss.map_or(String::new(), |peak| format!("; peak {}", bytes(peak)))
         ));
         lines.push(format!(
-            "energy (W, RGB): emitted {}, absorbed {}, escaped {}",
+            "energy (W, RGB): emitted {}, absorbed {}, escaped {}, still travelling {}",
             rgb(self.energy.emitted),
             rgb(self.energy.absorbed),
-            rgb(self.energy.escaped)
+            rgb(self.energy.escaped),
+            self.energy.travelling.map(|power| format!("{power:.1e}")).join(" ")
+        ));
+        lines.push(format!(
+            "column sums: {:.3} to {:.3}; collocation is exact by rows, so in a closed scene what is away from 1 shows as \
+             escaped",
+            self.column_sums[0], self.column_sums[1]
         ));
         if let Some(verify) = &self.verify {
             lines.push(format!(
@@ -97,16 +103,28 @@ impl Report {
 
     /// The first rounds and the last; a thousand lines help nobody.
     fn round_lines(&self) -> Vec<String> {
+        let off = |round: &RoundReport| round.true_error.map_or(String::new(), |off| format!("{off:>14.3e}"));
+        let shows_off = self.rounds.iter().any(|round| round.true_error.is_some());
         let mut lines = vec![format!(
-            "{:<8}{:>12}{:>14}{:>14}{:>10}",
-            "round", "residual", "bound W/m²", "relative", "seconds"
+            "{:<8}{:>12}{:>14}{:>14}{:>10}{}",
+            "round",
+            "residual",
+            "bound W/m²",
+            "relative",
+            "seconds",
+            if shows_off { format!("{:>14}", "true W/m²") } else { String::new() }
         )];
         let count = self.rounds.len();
         for round in &self.rounds {
             if round.round <= 12 || round.round + 3 > count {
                 lines.push(format!(
-                    "{:<8}{:>12.3e}{:>14.3e}{:>14.3e}{:>10.3}",
-                    round.round, round.residual, round.error_bound, round.relative_bound, round.seconds
+                    "{:<8}{:>12.3e}{:>14.3e}{:>14.3e}{:>10.3}{}",
+                    round.round,
+                    round.residual,
+                    round.error_bound,
+                    round.relative_bound,
+                    round.seconds,
+                    off(round)
                 ));
             } else if round.round == 13 {
                 lines.push("…".into());

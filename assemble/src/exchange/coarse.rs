@@ -1,0 +1,156 @@
+//! The coarse space: where light settles that goes to and fro between parts many times. In goes what the equation misses;
+//! out comes a sum of the parts' answers to light from outside that misses the same on average.
+//!
+//! With the answers as columns of C, y solves (Cᵀ D A C) y = Cᵀ D v, D the areas, and C y starts the parts' own corrections.
+//! Nicolaides 1987 for the idea; Tang, Nabben, Vuik & Erlangga 2009 for the ways to combine the two.
+
+use super::Node;
+use super::groups::{Group, ranges};
+use equilux_bake::equilibrium::direct::{factorise_dense, solve};
+use equilux_bake::equilibrium::{added, scaled};
+use equilux_formats::{Factors, Rgb};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// At most so many unknowns: their dense matrix then costs less than a second.
+const MOST: usize = 1024;
+
+/// At most so many unknowns a part: as many as parts have answers.
+const ANSWERS: usize = 7;
+
+/// Exchanges that block Jacobi would end in this many rounds do without.
+const FEW: f64 = 8.0;
+
+/// The coarse equation of a group, factored.
+pub struct Coarse<'a> {
+    group: &'a Group<'a>,
+    /// Each member's unknowns.
+    unknowns: Vec<Range<usize>>,
+    factors: Factors,
+}
+
+/// Whether light goes to and fro so often that a coarse space pays, to `error` of the brightest radiosity, between parts
+/// that return these shares of uniform light from outside. A round of block Jacobi leaves no more than the largest of
+/// them of what uniform light misses.
+pub fn pays(returned: impl Iterator<Item = Rgb>, error: f64) -> bool {
+    jacobi_rounds(returned.flatten().fold(0.0, f64::max), error) > FEW
+}
+
+/// About how many rounds of block Jacobi it takes to `error` of the brightest radiosity if a round leaves this share.
+pub fn jacobi_rounds(share: f64, error: f64) -> f64 {
+    if share < 1.0 { error.max(f64::EPSILON).ln() / share.ln() } else { f64::INFINITY }
+}
+
+impl<'a> Coarse<'a> {
+    /// The coarse equation; none if the parts give no answers or are too many.
+    pub fn of(group: &'a Group<'a>) -> Option<Self> {
+        let each = (MOST / group.members.len().max(1)).min(ANSWERS);
+        let unknowns = ranges(group.nodes().map(|node| node.answers.radiosity.len().min(each)));
+        let size = unknowns.last().map_or(0, |last| last.end);
+        if group.members.len() < 2 || size == 0 {
+            return None;
+        }
+        let coupling = coupling(group, &unknowns);
+        let entry = |channel: usize, row: usize, column: usize| {
+            let member = unknowns.partition_point(|range| range.end <= row);
+            let (answers, own) = (&group.node(member).answers, &unknowns[member]);
+            let (count, first) = (answers.radiosity.len(), row - own.start);
+            if answers.matrix[first * (count + 1)][channel] == 0.0 {
+                // An answer that this channel does not have.
+                return f64::from(u8::from(row == column));
+            }
+            let inside = own.contains(&column).then(|| answers.matrix[first * count + column - own.start]);
+            inside.map_or(0.0, |inside| inside[channel]) - coupling[member][first * size + column][channel]
+        };
+        Some(Self { group, factors: factorise_dense(size, entry), unknowns })
+    }
+
+    /// Number of unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns.last().map_or(0, |last| last.end)
+    }
+
+    /// The sum of answers; none if nothing is missed on average. Vectors of the group, W/m².
+    pub fn correct(&self, missing: &[Rgb]) -> Option<Vec<Rgb>> {
+        let members = || (0..self.group.members.len()).into_par_iter();
+        let missed: Vec<Rgb> = members().flat_map_iter(|m| self.missed_by(m, missing)).collect();
+        if missed.iter().all(|missed| *missed == [0.0; 3]) {
+            return None;
+        }
+        let shares = solve(&self.factors, &missed);
+        // Where nothing takes light out of the scene, the coarse equation has no solution either.
+        let finite = shares.as_flattened().iter().all(|share| share.is_finite());
+        finite.then(|| members().flat_map_iter(|m| self.sum_of_answers(m, &shares)).collect())
+    }
+
+    /// Σ_i A_i a_i v_i for each answer a of a member.
+    fn missed_by(&self, member: usize, missing: &[Rgb]) -> Vec<Rgb> {
+        let node = self.group.node(member);
+        let missing = &missing[self.group.elements_of(member)];
+        let product = |answer: &Vec<Rgb>| {
+            let terms = answer.iter().zip(missing).enumerate();
+            terms.fold([0.0; 3], |sum, (i, (&a, &v))| {
+                added(sum, scaled(a, v).map(|av| av * node.clusters.area_of(i)))
+            })
+        };
+        node.answers.radiosity[..self.unknowns[member].len()].iter().map(product).collect()
+    }
+
+    fn sum_of_answers(&self, member: usize, shares: &[Rgb]) -> Vec<Rgb> {
+        let mut sum = vec![[0.0; 3]; self.group.elements_of(member).len()];
+        let answers = &self.group.node(member).answers.radiosity;
+        for (&share, answer) in shares[self.unknowns[member].clone()].iter().zip(answers) {
+            sum.iter_mut().zip(answer).for_each(|(sum, &a)| *sum = added(*sum, scaled(share, a)));
+        }
+        sum
+    }
+}
+
+/// Σ_i A_i a_i ρ_i Σ_j F_ij b_j for the answers a of one member and b of all others, by rows; one matrix a member.
+fn coupling(group: &Group, unknowns: &[Range<usize>]) -> Vec<Vec<Rgb>> {
+    let sent = |m: usize| -> Vec<Vec<Rgb>> {
+        let node = group.node(m);
+        let answers = node.answers.radiosity[..unknowns[m].len()].iter();
+        answers.map(|answer| node.clusters.means(answer)).collect()
+    };
+    let sent: Vec<Vec<Vec<Rgb>>> = (0..unknowns.len()).into_par_iter().map(sent).collect();
+    (0..unknowns.len()).into_par_iter().map(|m| received_by(group, m, unknowns, &sent)).collect()
+}
+
+/// The matrix of one member from what all answers send.
+fn received_by(group: &Group, member: usize, unknowns: &[Range<usize>], sent: &[Vec<Vec<Rgb>>]) -> Vec<Rgb> {
+    let node = group.node(member);
+    let answers = &node.answers.radiosity[..unknowns[member].len()];
+    let size = unknowns.last().map_or(0, |last| last.end);
+    let mut matrix = vec![[0.0; 3]; answers.len() * size];
+    for rows in 0..node.coupling.groups() {
+        let weights: Vec<[f64; 3 * ANSWERS]> =
+            node.coupling.receivers_of(rows).map(|i| weights(node, answers, i)).collect();
+        if weights.iter().flatten().all(|&weight| weight == 0.0) {
+            continue;
+        }
+        // Senders come in order, so those of a member together.
+        let mut from = 0;
+        for (sender, sums) in node.coupling.scatter_group(rows, &weights) {
+            while group.senders_of(from).end <= sender {
+                from += 1;
+            }
+            let place = sender - group.senders_of(from).start;
+            for (sum, row) in sums.as_chunks::<3>().0.iter().zip(matrix.chunks_mut(size)) {
+                for (entry, sent) in row[unknowns[from].clone()].iter_mut().zip(&sent[from]) {
+                    *entry = added(*entry, scaled(*sum, sent[place]));
+                }
+            }
+        }
+    }
+    matrix
+}
+
+/// A_i a_i ρ_i of one element for each answer a.
+fn weights(node: &Node, answers: &[Vec<Rgb>], i: usize) -> [f64; 3 * ANSWERS] {
+    let mut weights = [0.0; 3 * ANSWERS];
+    let reflected = node.optics.reflectance[i].map(|rho| rho * node.clusters.area_of(i));
+    let places = weights.as_chunks_mut::<3>().0.iter_mut();
+    places.zip(answers).for_each(|(place, answer)| *place = scaled(reflected, answer[i]));
+    weights
+}

@@ -1,0 +1,260 @@
+//! The rounds of one group of parts: corrections until the bound asked for is proved. Every method corrects by the same
+//! sweep; they differ in who takes turns and in what is done with the correction.
+
+use super::bound::Margin;
+use super::coarse::{Coarse, pays};
+use super::energy::{Columns, Energy};
+use super::groups::Group;
+use super::sweep::Sweep;
+use super::{Goal, Method, StepTimes, is_shown};
+use equilux_bake::equilibrium::krylov::Space;
+use equilux_bake::equilibrium::{added, largest, subtract};
+use equilux_bake::monitor::Monitor;
+use equilux_formats::Rgb;
+use std::time::{Duration, Instant};
+
+/// Turns that parts take in a sweep that is to precondition: neighbours mostly hear the newest of each other, and a
+/// quarter of all parts is solved side by side.
+const TURNS: usize = 4;
+
+/// What a local solver may leave when its answer is only to precondition.
+const ROUGH: f64 = 3e-3;
+
+/// A residual this small, relative to the brightest radiosity, is the rounding of what it was computed from.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+
+/// How a group is solved.
+pub struct Course<'a> {
+    group: &'a Group<'a>,
+    coarse: Option<Coarse<'a>>,
+    margin: Margin,
+    columns: Columns,
+    sweep: Sweep<'a>,
+    krylov: bool,
+}
+
+/// What is known of a group's light at some time.
+#[derive(Clone, Copy)]
+pub struct Judged {
+    /// Largest residual, W/m².
+    pub residual: Rgb,
+    /// No radiosity is further than this from the solution, W/m², channel by channel.
+    pub error_bound: Rgb,
+    /// The group's brightest radiosity, W/m².
+    pub brightest: Rgb,
+    /// Where the power is.
+    pub energy: Energy,
+}
+
+/// A round of one group.
+pub struct GroupRound {
+    /// What is known after it.
+    pub judged: Judged,
+    /// Wall time.
+    pub time: Duration,
+    /// Radiosity after the round, if it is to be shown or was the last.
+    pub radiosity: Option<Vec<Rgb>>,
+}
+
+/// The light of a group in the end. Vectors of the group.
+pub struct GroupOutcome {
+    /// W/m².
+    pub radiosity: Vec<Rgb>,
+    /// W/m².
+    pub irradiance: Vec<Rgb>,
+    /// The rounds; none if the light at the start already was within the bound.
+    pub rounds: Vec<GroupRound>,
+    /// What is known of the light in the end.
+    pub judged: Judged,
+    /// Whether the goal was met.
+    pub converged: bool,
+    /// Local equilibria that were not asked for, because nothing shone.
+    pub idle: usize,
+    /// Unknowns of the coarse space; none if it was left out.
+    pub coarse: usize,
+}
+
+/// The light of a group on its way to equilibrium.
+struct State {
+    radiosity: Vec<Rgb>,
+    /// F B, as of when it was last computed anew.
+    irradiance: Vec<Rgb>,
+    /// E + ρF B − B; tracked from round to round.
+    missing: Vec<Rgb>,
+    /// The light that the Krylov space began with, and the space, if there is to be one.
+    krylov: Option<(Vec<Rgb>, Space)>,
+}
+
+impl<'a> Course<'a> {
+    /// Prepare what the method needs for a group.
+    pub fn new(group: &'a Group<'a>, method: Method, goal: Goal) -> Self {
+        let count = group.members.len();
+        let krylov = matches!(method, Method::Auto | Method::Gmres) && count > 1;
+        let wanted =
+            method == Method::Gmres || pays(group.nodes().map(|node| node.answers.returned), goal.error);
+        let coarse = if krylov && wanted { Coarse::of(group) } else { None };
+        let turns = match method {
+            Method::Jacobi => 1,
+            Method::GaussSeidel => count,
+            Method::Auto | Method::Gmres => TURNS,
+        };
+        let margin = Margin::of(group, coarse.as_ref(), TURNS);
+        let sweep = Sweep::new(group, turns, krylov.then_some(ROUGH));
+        Self { group, coarse, margin, columns: Columns::of(group), sweep, krylov }
+    }
+
+    /// Least and largest column sum.
+    pub fn column_sums(&self) -> [f64; 2] {
+        self.columns.range()
+    }
+
+    /// Rounds from `start`, or from darkness, until the goal is met, no progress is possible, or somebody stops it.
+    pub fn run(
+        mut self,
+        start: Option<Vec<Rgb>>,
+        goal: Goal,
+        times: &mut StepTimes,
+        monitor: &Monitor,
+    ) -> GroupOutcome {
+        let is_warm = start.is_some();
+        let mut state = self.begin(start);
+        let mut judged = self.judge(&state);
+        if is_warm {
+            judged.error_bound = self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
+        }
+        let mut converged = is_warm && judged.is_within(goal.error);
+        let mut rounds: Vec<GroupRound> = Vec::new();
+        let mut proved_before = f64::INFINITY;
+        while rounds.len() < goal.rounds && !converged && !monitor.stopped() {
+            let start = Instant::now();
+            self.advance(&mut state, times);
+            judged = self.judge(&state);
+            let settled = judged.is_rounded() || state.is_full();
+            let ends = rounds.len() + 1 == goal.rounds || monitor.stopped();
+            let mut stalled = false;
+            if judged.is_within(goal.error) || settled || ends {
+                // What was tracked from round to round is computed anew before anything is said to be proved.
+                self.refresh(&mut state);
+                judged = self.judge(&state);
+                stalled = settled && judged.relative_bound() > 0.5 * proved_before;
+                proved_before = judged.relative_bound();
+                // All that rounding allows is what an error of zero asks for.
+                converged = judged.is_within(goal.error) || (stalled && goal.error == 0.0);
+            }
+            forget(&mut rounds);
+            let radiosity = Some(state.radiosity.clone());
+            rounds.push(GroupRound { judged, time: start.elapsed(), radiosity });
+            monitor.advance(1);
+            if stalled {
+                break;
+            }
+        }
+        judged.error_bound = self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
+        if let Some(last) = rounds.last_mut() {
+            last.judged = judged;
+        }
+        look_back(&mut rounds, &state.radiosity);
+        let waiting = self.group.waiting_irradiance(&state.radiosity);
+        GroupOutcome {
+            irradiance: sum(&state.irradiance, &waiting),
+            radiosity: state.radiosity,
+            rounds,
+            judged,
+            converged,
+            idle: self.sweep.idle,
+            coarse: self.coarse.as_ref().map_or(0, Coarse::unknowns),
+        }
+    }
+
+    fn begin(&self, start: Option<Vec<Rgb>>) -> State {
+        let dark = || vec![[0.0; 3]; self.group.elements()];
+        let irradiance = start.as_ref().map_or_else(dark, |start| self.group.irradiance(start));
+        let radiosity = start.unwrap_or_else(dark);
+        let missing = self.group.residual(&radiosity, &irradiance);
+        let krylov = self.krylov.then(|| (radiosity.clone(), Space::new(&missing)));
+        State { radiosity, irradiance, missing, krylov }
+    }
+
+    /// One round: a correction, and what is still missing then.
+    fn advance(&mut self, state: &mut State, times: &mut StepTimes) {
+        let Some((base, space)) = &mut state.krylov else {
+            let (z, az) = self.sweep.correct(&state.missing, None, times);
+            state.radiosity = sum(&state.radiosity, &z);
+            state.missing = state.missing.iter().zip(az).map(|(&r, az)| subtract(r, az)).collect();
+            return;
+        };
+        let coarse = self.coarse.as_ref().and_then(|coarse| coarse.correct(space.newest()));
+        let (z, az) = self.sweep.correct(space.newest(), coarse, times);
+        space.add(z, az);
+        state.radiosity = sum(base, &space.correction());
+        state.missing = space.residual();
+    }
+
+    /// Compute from the radiosity alone what is missing.
+    fn refresh(&self, state: &mut State) {
+        state.irradiance = self.group.irradiance(&state.radiosity);
+        state.missing = self.group.residual(&state.radiosity, &state.irradiance);
+        state.krylov = self.krylov.then(|| (state.radiosity.clone(), Space::new(&state.missing)));
+    }
+
+    fn judge(&self, state: &State) -> Judged {
+        Judged {
+            residual: largest(&state.missing),
+            error_bound: self.margin.bound(&state.missing, &state.radiosity),
+            brightest: largest(&state.radiosity),
+            energy: self.columns.account(self.group, &state.radiosity, &state.missing),
+        }
+    }
+}
+
+impl State {
+    fn is_full(&self) -> bool {
+        self.krylov.as_ref().is_some_and(|(_, space)| space.is_full())
+    }
+}
+
+impl Judged {
+    /// The bound over the brightest radiosity, of the worst channel: channels are equations of their own.
+    pub fn relative_bound(&self) -> f64 {
+        let of = |c: usize| match self.error_bound[c] {
+            0.0 => 0.0,
+            bound => bound / self.brightest[c],
+        };
+        (0..3).map(of).fold(0.0, f64::max)
+    }
+
+    /// Whether what is missing is no more than rounding, in every channel.
+    fn is_rounded(&self) -> bool {
+        (0..3).all(|c| self.residual[c] <= ROUNDED * self.brightest[c])
+    }
+
+    fn is_within(&self, error: f64) -> bool {
+        self.relative_bound() <= error
+    }
+}
+
+/// Drop the light of the last round if it is not to be shown: another follows.
+fn forget(rounds: &mut [GroupRound]) {
+    let number = rounds.len();
+    if let Some(last) = rounds.last_mut().filter(|_| !is_shown(number)) {
+        last.radiosity = None;
+    }
+}
+
+/// Later light tells how far earlier light was off: |B − B_n| ≤ |B − B_N| + |B_N − B_n|.
+fn look_back(rounds: &mut [GroupRound], light: &[Rgb]) {
+    let Some(proved) = rounds.last().map(|last| last.judged.error_bound) else { return };
+    for round in rounds {
+        let Some(earlier) = &round.radiosity else { continue };
+        let moved = earlier
+            .iter()
+            .zip(light)
+            .fold([0.0; 3], |most: Rgb, (&a, &b)| std::array::from_fn(|c| most[c].max((a[c] - b[c]).abs())));
+        let bound = &mut round.judged.error_bound;
+        *bound = std::array::from_fn(|c| bound[c].min(moved[c] + proved[c]));
+    }
+}
+
+fn sum(a: &[Rgb], b: &[Rgb]) -> Vec<Rgb> {
+    a.iter().zip(b).map(|(&a, &b)| added(a, b)).collect()
+}
