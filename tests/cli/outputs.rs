@@ -32,7 +32,8 @@ fn a_run_leaves_a_picture_of_each_round_and_the_result() {
 #[test]
 fn of_many_rounds_the_first_eight_powers_of_two_and_the_last_have_pictures() {
     let workshop = Workshop::with(&echoing(0.01));
-    let ended = workshop.run("assemble", &["scene.glb", "--element-size", "1", "--rounds", "21"]);
+    let arguments = ["scene.glb", "--element-size", "1", "--exchange", "jacobi", "--rounds", "21"];
+    let ended = workshop.run("assemble", &arguments);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let rounds = [1, 2, 3, 4, 5, 6, 7, 8, 16, 21].map(|round| format!("round-{round:03}.png"));
     let expected =

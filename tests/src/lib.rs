@@ -1,7 +1,9 @@
 //! What the tests and benchmarks share: shapes, rooms and glTF files made by hand, our programs, and the cases with
 //! known answers.
 
+pub mod assembled;
 pub mod cases;
+pub mod corridors;
 pub mod curved;
 pub mod levels;
 pub mod measure;

@@ -75,7 +75,7 @@ impl Workshop {
                 division,
                 local_solver: None,
             },
-            method: Method::Jacobi,
+            method: Method::Auto,
             goal: Goal { error: 0.0, rounds: usize::MAX },
             exact_rows: ExactRows::About(256),
             verify: false,

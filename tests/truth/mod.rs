@@ -68,7 +68,7 @@ fn assembled(scene: &Path) -> Table {
             division: Division::Authored,
             local_solver: None,
         },
-        method: Method::Jacobi,
+        method: Method::Auto,
         goal: Goal { error: 1e-6, rounds: usize::MAX },
         exact_rows: ExactRows::About(0),
         verify: false,
