@@ -135,11 +135,12 @@ impl Coupler<'_> {
         };
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let part = &self.placed.part_of(instance).part;
-        let manifest = light_manifest(key, &part.optics, part.local.solver);
+        let optics = self.placed.paint_of(instance);
+        let manifest = light_manifest(key, &optics, part.local.solver);
         let name = self.name(instance, "corrected light");
         let (light, _) = cached(self.store, &name, &manifest, self.monitor, || {
-            let local = local_equilibrium(&self_block, &part.geometry, &part.optics, part.local.solver);
-            Ok(Some(BakedLight { optics: part.optics.clone(), local }))
+            let local = local_equilibrium(&self_block, &part.geometry, &optics, part.local.solver);
+            Ok(Some(BakedLight { optics: optics.clone(), local }))
         })?
         .expect("a local equilibrium is not stopped halfway");
         Ok(Some(Corrected { self_block, local: light.local, intruders, origin, time }))

@@ -59,8 +59,10 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         Error::new(&job.scene, "stopped before the form factors were complete", "a complete run", remedy)
     };
     let element_size = prepared.element_size.to_string();
-    let placed = bake_parts(job, prepared, &store, monitor)?.ok_or_else(stopped)?;
+    let oven = Oven { store: &store, file: &job.scene, resolution: job.preparation.resolution, monitor };
+    let mut placed = bake_parts(&oven, prepared)?.ok_or_else(stopped)?;
     let coupled = couple(job, &placed, &store, monitor)?.ok_or_else(stopped)?;
+    placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
 
     let each: Vec<Optics> = (0..placed.instances.len()).map(|k| placed.optics_of(k)).collect();
     let optics = whole_optics(&placed);
@@ -100,9 +102,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     Ok(report)
 }
 
-fn bake_parts(job: &Job, prepared: Prepared, store: &Store, monitor: &Monitor) -> Result<Option<Placed>> {
-    let resolution = job.preparation.resolution;
-    let oven = Oven { store, file: &job.scene, resolution, monitor };
+fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
     let mut parts: Vec<Baked> = Vec::new();
     for part in &prepared.parts {
         let Some(baked) = oven.bake(part)? else { return Ok(None) };

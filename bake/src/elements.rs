@@ -3,7 +3,9 @@
 use crate::clusters;
 use crate::merge::{Merged, merge};
 use crate::planes::FLATNESS;
-use equilux_formats::{Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part};
+use equilux_formats::{
+    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted,
+};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -75,6 +77,17 @@ pub fn optics(geometry: &Geometry, materials: &[Material]) -> Optics {
         reflectance: geometry.elements.iter().map(|e| of(e).reflectance).collect(),
         emission: geometry.elements.iter().map(|e| of(e).emission).collect(),
     }
+}
+
+/// The same where some of the materials look otherwise.
+pub fn repainted(geometry: &Geometry, optics: &Optics, repainted: &[Repainted]) -> Optics {
+    let mut here = optics.clone();
+    for (i, element) in geometry.elements.iter().enumerate() {
+        if let Some(new) = repainted.iter().find(|new| new.material == element.material) {
+            (here.reflectance[i], here.emission[i]) = (new.reflectance, new.emission);
+        }
+    }
+    here
 }
 
 /// A triangle or parallelogram of one material that is cut up as a whole.

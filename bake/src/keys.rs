@@ -6,6 +6,7 @@
 //! has all of these: whether something stands inside one does not matter here, as a key under which nothing lies
 //! harms nobody.
 
+use crate::elements::repainted;
 use crate::gltf_import::import_scene;
 use crate::oven::{KERNEL_VERSION, geometry_manifest, light_manifest};
 use crate::prepare::{Preparation, Prepared, prepare};
@@ -41,8 +42,10 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution) -> HashSet<Key> {
     for number in 0..scene.instances.len() {
         let key = |what| placed_manifest(&scene.instances, &part_keys, resolution, number, what).key();
         let part = &scene.parts[scene.instances[number].part.index()];
-        let light = light_manifest(key(CORRECTED).into(), &part.optics, part.solver);
-        keys.extend([key(COUPLING), key(CORRECTED), light.key()]);
+        let optics = repainted(&part.geometry, &part.optics, &scene.instances[number].repainted);
+        let own = part_keys[scene.instances[number].part.index()];
+        let light = |block: Key| light_manifest(block.into(), &optics, part.solver).key();
+        keys.extend([key(COUPLING), key(CORRECTED), light(key(CORRECTED)), light(own)]);
     }
     keys
 }

@@ -1,6 +1,7 @@
 //! Prepared part → [`BakedPart`]: its own block of form factors and its local equilibrium, from the cache if there.
 
 use crate::cached::{Origin, cached, foreseen};
+use crate::elements::repainted;
 use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
@@ -9,8 +10,8 @@ use crate::prepare::PreparedPart;
 use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use equilux_formats::{
-    BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Key, LocalEquilibrium,
-    LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
+    BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Instance, Key,
+    LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
 use std::path::Path;
@@ -71,27 +72,69 @@ impl Oven<'_> {
         })?;
         let Some((geometry, form_factors)) = found else { return Ok(None) };
         let start = Instant::now();
-        let manifest = light_manifest(key.into(), &part.optics, part.solver);
-        let name = self.name(part, "light");
-        let (light, light_origin) = cached(self.store, &name, &manifest, self.monitor, || {
-            self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
-            self.refuse_endless_light(part, &geometry)?;
-            Ok(Some(BakedLight {
-                local: local_equilibrium(&geometry.self_block, &geometry.geometry, &part.optics, part.solver),
-                optics: part.optics.clone(),
-            }))
-        })?
-        .expect("a local equilibrium is not stopped halfway");
+        let unlit = Unlit {
+            name: &part.name,
+            what: "light",
+            key,
+            geometry: &part.geometry,
+            self_block: &geometry.self_block,
+            solver: part.solver,
+        };
+        let (local, light_origin) = self.light(&unlit, &part.optics, |element| {
+            part.materials[part.geometry.elements[element].material.index()].name.clone()
+        })?;
         let part = BakedPart {
             name: part.name.clone(),
             geometry: part.geometry.clone(),
-            optics: light.optics,
+            optics: part.optics.clone(),
             materials: part.materials.clone(),
             self_block: geometry.self_block,
-            local: light.local,
+            local,
         };
         let light_time = start.elapsed();
         Ok(Some(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time }))
+    }
+
+    /// The light of a baked part on its own as an instance has it repainted, and where that came from; none if the part's
+    /// serves: it tells how the part answers light, which depends on reflectance alone.
+    pub fn relight(&self, baked: &Baked, instance: &Instance) -> Result<Option<(LocalEquilibrium, Origin)>> {
+        let part = &baked.part;
+        let optics = repainted(&part.geometry, &part.optics, &instance.repainted);
+        if optics.reflectance == part.optics.reflectance {
+            return Ok(None);
+        }
+        let unlit = Unlit {
+            name: &instance.name,
+            what: "repainted light",
+            key: baked.key,
+            geometry: &part.geometry,
+            self_block: &part.self_block,
+            solver: part.local.solver,
+        };
+        let material =
+            |element: usize| part.materials[part.geometry.elements[element].material.index()].name.clone();
+        self.light(&unlit, &optics, material).map(Some)
+    }
+
+    /// The light of a part with these optics. `material` names that of an element, for messages.
+    fn light(
+        &self,
+        part: &Unlit,
+        optics: &Optics,
+        material: impl Fn(usize) -> String,
+    ) -> Result<(LocalEquilibrium, Origin)> {
+        let manifest = light_manifest(part.key.into(), optics, part.solver);
+        let name = self.named(part.name, part.what);
+        let (light, origin) = cached(self.store, &name, &manifest, self.monitor, || {
+            self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
+            if let Some(element) = endless_in_block(optics, part.self_block, &part.geometry.clusters) {
+                return Err(self.endless_light(part.name, &material(element)));
+            }
+            let local = local_equilibrium(part.self_block, part.geometry, optics, part.solver);
+            Ok(Some(BakedLight { local, optics: optics.clone() }))
+        })?
+        .expect("a local equilibrium is not stopped halfway");
+        Ok((light.local, origin))
     }
 
     /// Where the form factors of a part would come from. Computes none of them.
@@ -101,25 +144,34 @@ impl Oven<'_> {
     }
 
     fn name(&self, part: &PreparedPart, what: &str) -> String {
-        format!("{what} of {} in {}", part.name, self.file.display())
+        self.named(&part.name, what)
     }
 
-    fn refuse_endless_light(&self, part: &PreparedPart, baked: &BakedGeometry) -> Result<()> {
-        let Some(element) = endless_in_block(&part.optics, &baked.self_block, &baked.geometry.clusters)
-        else {
-            return Ok(());
-        };
-        Err(Error::new(
+    fn named(&self, name: &str, what: &str) -> String {
+        format!("{what} of {name} in {}", self.file.display())
+    }
+
+    fn endless_light(&self, part: &str, material: &str) -> Error {
+        Error::new(
             self.file,
             format!(
-                "part `{}` is closed, reflects everything and emits (material `{}`): its light grows without end",
-                part.name,
-                part.materials[part.geometry.elements[element].material.index()].name
+                "part `{part}` is closed, reflects everything and emits (material `{material}`): its light grows without end"
             ),
             "a reflectance below 1 or an opening somewhere",
             "lower a base colour below 1, or switch the emission off",
-        ))
+        )
     }
+}
+
+/// A part whose form factors are known, and what it is called.
+struct Unlit<'a> {
+    name: &'a str,
+    /// What its light is called in the cache.
+    what: &'a str,
+    key: Key,
+    geometry: &'a Geometry,
+    self_block: &'a Rows,
+    solver: LocalSolver,
 }
 
 /// The part's light with nothing arriving from outside, its answers to what arrives, and what its solver wants kept.

@@ -126,6 +126,7 @@ fn divided(
             part: PartId::from_index(number),
             placement: DAffine3::from_translation(origin),
             emission_scale: 1.0,
+            repainted: vec![],
         });
         let solver = wanted.local_solver.unwrap_or_else(|| default_solver(geometry.elements.len()));
         parts.push(PreparedPart {
@@ -140,22 +141,15 @@ fn divided(
     Prepared { parts, instances, element_size: authored.element_size }
 }
 
-/// All instances in scene coordinates, with one list of materials, emission scaled as each instance has it.
+/// All instances in scene coordinates, with one list of materials, as each instance has them.
 fn merged(prepared: &Prepared) -> (Geometry, Vec<Material>) {
     let part = |instance: &Instance| &prepared.parts[instance.part.index()];
     let world = World::new(prepared.instances.iter().map(|i| (&part(i).geometry, i.placement)));
     let mut materials: Vec<Material> = Vec::new();
     let mut elements = Vec::new();
     for (number, instance) in prepared.instances.iter().enumerate() {
-        let own: Vec<MaterialId> = part(instance)
-            .materials
-            .iter()
-            .map(|material| {
-                let mut material = material.clone();
-                material.emission = material.emission.map(|e| e * instance.emission_scale);
-                number_of(&mut materials, material)
-            })
-            .collect();
+        let here = instance.materials(&part(instance).materials);
+        let own: Vec<MaterialId> = here.into_iter().map(|m| number_of(&mut materials, m)).collect();
         let placed = world.elements[world.elements_of(number)].iter();
         elements.extend(placed.map(|e| Element { material: own[e.material.index()], ..*e }));
     }

@@ -27,7 +27,7 @@ pub use geometry::{Corners, Element, Face, Geometry, Optics};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
 pub use rows::{Precision, Rgb, RowGroup, Rows};
-pub use scene::{Camera, Instance, LightKind, PunctualLight, Scene};
+pub use scene::{Camera, Instance, LightKind, PunctualLight, Repainted, Scene};
 pub use solution::Solution;
 pub use store::{Lookup, Store, Swept, Tally, Turn};
 pub use stored::Stored;

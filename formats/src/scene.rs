@@ -1,7 +1,7 @@
 //! A scene: parts, where they stand, who looks, and what lights are not surfaces.
 
-use crate::ids::PartId;
-use crate::part::Part;
+use crate::ids::{MaterialId, PartId};
+use crate::part::{Material, Part};
 use glam::{DAffine3, DVec3};
 use std::path::PathBuf;
 
@@ -38,6 +38,33 @@ pub struct Instance {
     pub placement: DAffine3,
     /// Factor on the part's emission in this place (`extras.emission_scale`), 1 unless told.
     pub emission_scale: f64,
+    /// What the part's materials do with light in this place, where that is told (`extras.materials`).
+    pub repainted: Vec<Repainted>,
+}
+
+/// What a material of a part does with light in one place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Repainted {
+    /// The material.
+    pub material: MaterialId,
+    /// Diffuse reflectance ρ, 0..1, linear RGB.
+    pub reflectance: [f64; 3],
+    /// Emission, W/m², linear RGB, before the instance's emission scale.
+    pub emission: [f64; 3],
+}
+
+impl Instance {
+    /// The part's `materials` as they are in this place, emission scale included.
+    pub fn materials(&self, materials: &[Material]) -> Vec<Material> {
+        let mut here = materials.to_vec();
+        for Repainted { material, reflectance, emission } in &self.repainted {
+            let material = &mut here[material.index()];
+            (material.reflectance, material.emission) = (*reflectance, *emission);
+        }
+        here.iter_mut()
+            .for_each(|material| material.emission = material.emission.map(|e| e * self.emission_scale));
+        here
+    }
 }
 
 /// A perspective camera that looks along −Z with +Y up, as glTF has it.

@@ -3,6 +3,8 @@
 
 mod bytes;
 mod compressed;
+mod instances;
 mod left_out;
+mod overrides;
 mod reuse;
 mod split;

@@ -148,7 +148,7 @@ pub fn nodes<'a>(placed: &'a Placed, coupled: &'a [Coupled], optics: &'a [Optics
         .map(|k| {
             let part = &placed.part_of(k).part;
             let self_block = coupled[k].self_block(&part.self_block);
-            let answered = coupled[k].local(&part.local);
+            let answered = coupled[k].local(placed.local_of(k));
             let local = LocalSystem::new(
                 self_block,
                 &part.geometry.clusters,

@@ -3,6 +3,7 @@
 
 use super::buffers::read_buffers;
 use super::files::Files;
+use super::instancing::INSTANCING;
 use super::notes::Notes;
 use equilux_formats::{Error, Result};
 use gltf::json;
@@ -10,7 +11,8 @@ use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Extensions a file may require.
-const SUPPORTED: [&str; 5] = [
+const SUPPORTED: [&str; 6] = [
+    INSTANCING,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",

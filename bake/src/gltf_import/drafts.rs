@@ -3,11 +3,12 @@
 use super::document::Document;
 use super::extras::Extras;
 use super::lights::moved;
-use super::materials::same_material;
+use super::materials::Paint;
 use super::meshes::Mesh;
 use super::notes::Notes;
+use super::repaint::Look;
 use super::surfaces::Dropped;
-use equilux_formats::{Corners, LocalSolver, Material, MaterialId, PunctualLight, Result, Surface};
+use equilux_formats::{Corners, LocalSolver, MaterialId, PunctualLight, Result, Surface};
 use glam::DAffine3;
 
 /// No part has more surfaces: a few kilobytes of nodes that share a mesh could ask for any number.
@@ -50,23 +51,23 @@ impl Settings {
 #[derive(Default)]
 pub(super) struct Draft {
     pub(super) surfaces: Vec<Surface>,
-    pub(super) materials: Materials,
+    pub(super) paints: Paints,
     pub(super) lights: Vec<PunctualLight>,
     pub(super) settings: Settings,
     pub(super) dropped: Dropped,
 }
 
 impl Draft {
-    /// Adds `mesh`, placed by `placement`, its emission scaled.
+    /// Adds `mesh`, placed by `placement`, as `look` changes it.
     pub(super) fn add_mesh(
         &mut self,
         document: &Document,
         mesh: &Mesh,
         placement: DAffine3,
-        emission_scale: f64,
+        look: &Look,
     ) -> Result<()> {
-        for (surfaces, material) in &mesh.primitives {
-            let material = self.materials.id(scaled(material, emission_scale));
+        for (surfaces, paint) in &mesh.primitives {
+            let material = self.paints.id(look.on(paint));
             self.add(
                 document,
                 surfaces.iter().map(|corners| Surface { corners: *corners, material }),
@@ -77,25 +78,21 @@ impl Draft {
         Ok(())
     }
 
-    /// Adds all of `other`, placed by `placement`, its emission scaled.
+    /// Adds all of `other`, placed by `placement`, as `look` changes it.
     pub(super) fn add_draft(
         &mut self,
         document: &Document,
         other: &Draft,
         placement: DAffine3,
-        emission_scale: f64,
+        look: &Look,
     ) -> Result<()> {
-        let materials: Vec<MaterialId> = other
-            .materials
-            .0
-            .iter()
-            .map(|material| self.materials.id(scaled(material, emission_scale)))
-            .collect();
+        let materials: Vec<MaterialId> =
+            other.paints.0.iter().map(|paint| self.paints.id(look.on(paint))).collect();
         let surfaces = other.surfaces.iter();
         let surfaces =
             surfaces.map(|s| Surface { corners: s.corners, material: materials[s.material.index()] });
         self.add(document, surfaces, placement)?;
-        self.lights.extend(other.lights.iter().map(|light| moved(light, placement, emission_scale)));
+        self.lights.extend(other.lights.iter().map(|light| moved(light, placement, look.emission_scale)));
         self.dropped += other.dropped;
         Ok(())
     }
@@ -125,20 +122,17 @@ pub(super) fn transformed(corners: &Corners, placement: DAffine3) -> Corners {
     if placement.matrix3.determinant() < 0.0 { corners.flipped() } else { corners }
 }
 
-fn scaled(material: &Material, emission_scale: f64) -> Material {
-    Material { emission: material.emission.map(|e| e * emission_scale), ..material.clone() }
-}
+/// Paints, each once. Equal ones of different names stay apart: any of them may be repainted by its name, and that must
+/// not change elements.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Paints(pub(super) Vec<Paint>);
 
-/// Materials, each content once.
-#[derive(Default)]
-pub(super) struct Materials(pub(super) Vec<Material>);
-
-impl Materials {
-    /// The id of the material that does with light what `material` does.
-    pub(super) fn id(&mut self, material: Material) -> MaterialId {
-        let known = self.0.iter().position(|known| same_material(known, &material));
+impl Paints {
+    /// The id of `paint`.
+    pub(super) fn id(&mut self, paint: Paint) -> MaterialId {
+        let known = self.0.iter().position(|known| *known == paint);
         MaterialId::from_index(known.unwrap_or_else(|| {
-            self.0.push(material);
+            self.0.push(paint);
             self.0.len() - 1
         }))
     }

@@ -1,8 +1,9 @@
-//! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `local_solver`. Other keys are
-//! somebody else's and are left alone.
+//! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `local_solver`. Other
+//! keys are somebody else's and are left alone.
 
 use super::document::Document;
 use super::nodes::label;
+use super::repaint::{Changes, changes};
 use equilux_formats::{LocalSolver, Result};
 use serde_json::Value;
 
@@ -15,6 +16,8 @@ pub(super) struct Extras {
     pub(super) element_size: Option<f64>,
     /// Factor on the emission of everything below the node.
     pub(super) emission_scale: Option<f64>,
+    /// What becomes of materials of everything below the node.
+    pub(super) materials: Option<Changes>,
     /// How the part's local equilibrium is found.
     pub(super) local_solver: Option<LocalSolver>,
 }
@@ -33,6 +36,12 @@ impl Extras {
             emission_scale: key.get("emission_scale", "a number, 0 or more", |value| {
                 value.as_f64().filter(|&scale| scale.is_finite() && scale >= 0.0)
             })?,
+            materials: key.get(
+                "materials",
+                "materials' names, each with any of baseColorFactor (4 numbers, 0 to 1), emissiveFactor (3 numbers) and \
+                 emissiveStrength (a number), 0 or more",
+                changes,
+            )?,
             local_solver: key.get(
                 "local_solver",
                 "\"direct\", \"gauss-seidel\", \"progressive\" or \"iterative\"",

@@ -36,7 +36,7 @@ pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Res
         intensity,
         kind,
     };
-    Ok(moved(&at_origin, placed.placement, placed.emission_scale))
+    Ok(moved(&at_origin, placed.placement, placed.look.emission_scale))
 }
 
 /// `light` after `placement`, with its intensity scaled.

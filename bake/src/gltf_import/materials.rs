@@ -1,13 +1,37 @@
 //! What a surface does with light, from glTF's metallic-roughness material: base colour → reflectance, emissive
-//! factor × strength × π → emission. All else a material may hold is ignored and noted.
+//! factor × strength × π → emission. All else a material may hold is ignored and noted. What authors repaint is told by
+//! [`super::repaint`].
 
 use super::document::Document;
 use super::notes::Notes;
 use equilux_formats::{Material, Result};
 use std::f64::consts::PI;
 
-/// The radiosity material of `source`.
-pub(super) fn material(document: &Document, source: &gltf::Material, notes: &mut Notes) -> Result<Material> {
+/// A material as a file has it. Factor and strength of the emission are kept apart, as either may be repainted.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Paint {
+    pub(super) name: String,
+    pub(super) reflectance: [f64; 3],
+    pub(super) emissive_factor: [f64; 3],
+    /// Emission scales of nodes included.
+    pub(super) emissive_strength: f64,
+    pub(super) double_sided: bool,
+}
+
+impl Paint {
+    /// What it does with light.
+    pub(super) fn material(&self) -> Material {
+        Material {
+            name: self.name.clone(),
+            reflectance: self.reflectance,
+            emission: self.emissive_factor.map(|factor| PI * (factor * self.emissive_strength)),
+            double_sided: self.double_sided,
+        }
+    }
+}
+
+/// The paint that `source` is.
+pub(super) fn paint(document: &Document, source: &gltf::Material, notes: &mut Notes) -> Result<Paint> {
     let subject = subject(source);
     let pbr = source.pbr_metallic_roughness();
     let [red, green, blue, _alpha] = pbr.base_color_factor().map(f64::from);
@@ -19,8 +43,9 @@ pub(super) fn material(document: &Document, source: &gltf::Material, notes: &mut
             "correct its baseColorFactor",
         ));
     }
-    let strength = f64::from(source.emissive_strength().unwrap_or(1.0));
-    let radiance = source.emissive_factor().map(|factor| f64::from(factor) * strength);
+    let emissive_strength = f64::from(source.emissive_strength().unwrap_or(1.0));
+    let emissive_factor = source.emissive_factor().map(f64::from);
+    let radiance = emissive_factor.map(|factor| factor * emissive_strength);
     if !radiance.iter().all(|l| l.is_finite() && *l >= 0.0) {
         return Err(document.error(
             format!("{subject} with the radiance {radiance:?}"),
@@ -29,10 +54,11 @@ pub(super) fn material(document: &Document, source: &gltf::Material, notes: &mut
         ));
     }
     note_ignored(source, &subject, notes);
-    Ok(Material {
+    Ok(Paint {
         name: source.name().unwrap_or_default().to_owned(),
         reflectance,
-        emission: radiance.map(|l| PI * l),
+        emissive_factor,
+        emissive_strength,
         double_sided: source.double_sided(),
     })
 }

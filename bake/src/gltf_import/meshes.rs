@@ -1,19 +1,19 @@
 //! Meshes read once, however often they are placed: surfaces in mesh coordinates and the material of each primitive.
 
 use super::document::Document;
-use super::materials::material;
+use super::materials::{Paint, paint};
 use super::notes::Notes;
 use super::surfaces::{Dropped, surfaces};
 use super::triangles::triangles;
-use equilux_formats::{Corners, Material, Result};
+use equilux_formats::{Corners, Result};
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// A mesh in its own coordinates.
 #[derive(Default)]
 pub(super) struct Mesh {
-    /// Surfaces and material of each primitive.
-    pub(super) primitives: Vec<(Vec<Corners>, Material)>,
+    /// Surfaces and paint of each primitive.
+    pub(super) primitives: Vec<(Vec<Corners>, Paint)>,
     /// What was left out of it.
     pub(super) dropped: Dropped,
 }
@@ -65,7 +65,7 @@ fn read_mesh(document: &Document, source: &gltf::Mesh, notes: &mut Notes) -> Res
             notes.add(&subject, remark);
         }
         mesh.dropped += surfaces.dropped;
-        mesh.primitives.push((surfaces.corners, material(document, &primitive.material(), notes)?));
+        mesh.primitives.push((surfaces.corners, paint(document, &primitive.material(), notes)?));
     }
     Ok(mesh)
 }

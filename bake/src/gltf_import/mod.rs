@@ -4,6 +4,7 @@
 //! - A part is a root node with all below it. A lone root that only wraps others is looked through. Roots with equal
 //!   contents are instances of one part.
 //! - A node whose extras name a `part` file is an instance of that file's contents.
+//! - A node with EXT_mesh_gpu_instancing is as many instances.
 //! - A part's coordinates start at zero, so that shapes far from the origin keep their digits; placements are
 //!   similarities, so that form factors are the same in each instance.
 //! - Bad input is refused, naming file, finding, expectation and remedy; input that is merely more than radiosity can
@@ -15,6 +16,7 @@ mod document;
 mod drafts;
 mod extras;
 mod files;
+mod instancing;
 mod lights;
 mod materials;
 mod meshes;
@@ -22,18 +24,22 @@ mod nodes;
 mod notes;
 mod part_files;
 mod parts;
+mod repaint;
 mod surfaces;
 mod triangles;
 
 use document::Document;
 use drafts::{Draft, Settings};
-use equilux_formats::{Instance, LocalSolver, PartId, Result, Scene};
+use equilux_formats::{Instance, LocalSolver, MaterialId, PartId, Repainted, Result, Scene};
 use glam::{DAffine3, DMat3, DVec3};
+use instancing::MOST_COPIES;
 use lights::{camera, light, moved};
+use materials::Paint;
 use meshes::Meshes;
 use nodes::{Placed, part_roots, subtree};
 use part_files::{PartFiles, no_surfaces};
-use parts::{Catalogue, settle, split};
+use parts::{Catalogue, Settled, settle, split};
+use repaint::Look;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -60,17 +66,27 @@ struct Stage<'a> {
     part_files: PartFiles,
     meshes: Meshes<'a>,
     catalogue: Catalogue,
-    /// What became of recipes met before: their part and where it starts, or nothing if no face was left.
-    made: HashMap<Recipe, Option<(PartId, DVec3)>>,
+    /// What became of recipes met before; nothing if no face was left.
+    made: HashMap<Recipe, Option<Made>>,
     scene: Scene,
+}
+
+/// A part, as it came from a recipe.
+#[derive(Clone)]
+struct Made {
+    part: PartId,
+    /// Where it starts in the coordinates of its draft.
+    start: DVec3,
+    /// Its materials, with the names that they have in this recipe.
+    paints: Rc<[Paint]>,
 }
 
 /// What a part is made from; equal recipes make equal parts. Floats as bits.
 #[derive(PartialEq, Eq, Hash)]
 struct Recipe {
     file: Option<PathBuf>,
-    /// Mesh, placement and emission scale of each node.
-    nodes: Vec<(usize, [u64; 12], u64)>,
+    /// Mesh, placement and look of each node.
+    nodes: Vec<(usize, [u64; 12], (u64, Vec<usize>))>,
     settings: (Option<u64>, Option<LocalSolver>),
     linear: [u64; 9],
 }
@@ -103,7 +119,8 @@ impl<'a> Stage<'a> {
         if self.scene.instances.is_empty() {
             return Err(no_surfaces(&self.document.path));
         }
-        let PartFiles { files, notes, .. } = self.part_files;
+        let PartFiles { files, mut notes, asked, .. } = self.part_files;
+        asked.note(&mut notes);
         let (sources, notes) = (files.sources, notes.into_sentences());
         Ok(Scene { sources, notes, parts: self.catalogue.parts, ..self.scene })
     }
@@ -111,28 +128,32 @@ impl<'a> Stage<'a> {
     /// Adds the part that `root` is, then whatever else stands below it.
     fn add_root(&mut self, root: Placed<'a>) -> Result<()> {
         let mut own = subtree(self.document, root.as_origin())?;
-        own.retain(|placed| placed.extras.part.is_none());
+        own.retain(|placed| placed.extras.part.is_none() && !placed.is_instanced());
         let mut settings = Settings::default();
         own.iter().for_each(|placed| {
             settings.hear(Settings::of(&placed.extras), &placed.name(), &mut self.part_files.notes);
         });
         own.retain(|placed| placed.node.mesh().is_some());
         if !own.is_empty() {
-            self.place(&root, settings, Contents::Nodes(own))?;
+            let at = (root.name(), root.placement);
+            self.place(&root.look, at, settings, &Contents::Nodes(own))?;
         }
         subtree(self.document, root)?.iter().try_for_each(|placed| self.add_other(placed))
     }
 
-    /// Adds what is not a mesh: a part file, a light, a camera.
+    /// Adds what is not a mesh of the root's part: a part file, copies of a mesh, a light, a camera.
     fn add_other(&mut self, placed: &Placed<'a>) -> Result<()> {
         if let Some(reference) = &placed.extras.part {
             let (path, draft) = self.part_files.draft(self.document, placed, reference)?;
             let lights = draft.lights.iter();
             self.scene
                 .lights
-                .extend(lights.map(|light| moved(light, placed.placement, placed.emission_scale)));
+                .extend(lights.map(|light| moved(light, placed.placement, placed.look.emission_scale)));
             let settings = Settings::of(&placed.extras).or(draft.settings);
-            self.place(placed, settings, Contents::File(path, draft))?;
+            self.place_copies(placed, settings, &Contents::File(path, draft))?;
+        } else if placed.is_instanced() && placed.node.mesh().is_some() {
+            let contents = Contents::Nodes(vec![placed.as_origin()]);
+            self.place_copies(placed, Settings::of(&placed.extras), &contents)?;
         }
         if let Some(source) = placed.node.light() {
             self.scene.lights.push(light(self.document, placed, &source)?);
@@ -141,43 +162,69 @@ impl<'a> Stage<'a> {
         Ok(())
     }
 
-    fn place(&mut self, placed: &Placed<'a>, settings: Settings, contents: Contents<'a>) -> Result<()> {
-        let (linear, placement) = split(placed.placement);
-        let recipe = recipe(&contents, settings, linear);
+    fn place_copies(
+        &mut self,
+        placed: &Placed<'a>,
+        settings: Settings,
+        contents: &Contents<'a>,
+    ) -> Result<()> {
+        let copies = placed.copies(self.document)?;
+        if self.scene.instances.len() + copies.len() > MOST_COPIES {
+            return Err(self.document.error(
+                format!("more than {MOST_COPIES} instances"),
+                "fewer",
+                "join copies to larger parts",
+            ));
+        }
+        copies.into_iter().try_for_each(|at| self.place(&placed.look, at, settings, contents))
+    }
+
+    /// Adds the instance of this name and placement.
+    fn place(
+        &mut self,
+        look: &Look,
+        (name, placement): (String, DAffine3),
+        settings: Settings,
+        contents: &Contents<'a>,
+    ) -> Result<()> {
+        let (linear, placement) = split(placement);
+        let recipe = recipe(contents, settings, linear);
         let made = match self.made.get(&recipe) {
-            Some(made) => *made,
+            Some(made) => made.clone(),
             None => {
-                let made = self.make(placed, settings, contents, linear)?;
-                self.made.insert(recipe, made);
+                let made = self.make(&name, settings, contents, linear)?;
+                self.made.insert(recipe, made.clone());
                 made
             }
         };
-        let instance = |(part, start)| Instance {
-            name: placed.name(),
+        let Some(Made { part, start, paints }) = made else { return Ok(()) };
+        self.part_files.asked.hear(look, &*paints);
+        self.scene.instances.push(Instance {
+            name,
             part,
             placement: placement * DAffine3::from_translation(start),
-            emission_scale: placed.emission_scale,
-        };
-        self.scene.instances.extend(made.map(instance));
+            emission_scale: look.emission_scale,
+            repainted: repainted(look, &paints),
+        });
         Ok(())
     }
 
     fn make(
         &mut self,
-        placed: &Placed<'a>,
+        instance: &str,
         settings: Settings,
-        contents: Contents<'a>,
+        contents: &Contents<'a>,
         linear: DMat3,
-    ) -> Result<Option<(PartId, DVec3)>> {
+    ) -> Result<Option<Made>> {
         let (name, draft) = match contents {
-            Contents::Nodes(nodes) => (placed.name(), Rc::new(self.draft(&nodes)?)),
+            Contents::Nodes(nodes) => (instance.to_owned(), Rc::new(self.draft(nodes)?)),
             Contents::File(path, draft) => {
-                (path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), draft)
+                (path.file_stem().unwrap_or_default().to_string_lossy().into_owned(), Rc::clone(draft))
             }
         };
-        let (part, start, dropped) = settle(&draft, linear, settings, name.clone());
+        let Settled { part, paints, start, dropped } = settle(&draft, linear, settings, name.clone());
         if part.surfaces.is_empty() {
-            self.part_files.notes.add(placed.name(), "left out, none of its faces has an area");
+            self.part_files.notes.add(instance, "left out, none of its faces has an area");
             return Ok(None);
         }
         let known = self.catalogue.parts.len();
@@ -185,7 +232,7 @@ impl<'a> Stage<'a> {
         if id.index() == known && dropped != Dropped::default() {
             self.part_files.notes.add(name, remark(dropped));
         }
-        Ok(Some((id, start)))
+        Ok(Some(Made { part: id, start, paints: paints.into() }))
     }
 
     fn draft(&mut self, nodes: &[Placed<'a>]) -> Result<Draft> {
@@ -193,7 +240,8 @@ impl<'a> Stage<'a> {
         for placed in nodes {
             let Some(mesh) = placed.node.mesh() else { continue };
             let mesh = self.meshes.get(&mesh, &mut self.part_files.notes)?;
-            draft.add_mesh(self.document, &mesh, placed.placement, placed.emission_scale)?;
+            self.part_files.asked.hear(&placed.look, mesh.primitives.iter().map(|(_, paint)| paint));
+            draft.add_mesh(self.document, &mesh, placed.placement, &placed.look)?;
         }
         Ok(draft)
     }
@@ -202,7 +250,7 @@ impl<'a> Stage<'a> {
 fn recipe(contents: &Contents, settings: Settings, linear: DMat3) -> Recipe {
     let mesh = |placed: &Placed| {
         let index = placed.node.mesh().map_or(usize::MAX, |mesh| mesh.index());
-        (index, placed.placement.to_cols_array().map(f64::to_bits), placed.emission_scale.to_bits())
+        (index, placed.placement.to_cols_array().map(f64::to_bits), placed.look.recipe())
     };
     let (file, nodes) = match contents {
         Contents::Nodes(nodes) => (None, nodes.iter().map(mesh).collect()),
@@ -214,6 +262,18 @@ fn recipe(contents: &Contents, settings: Settings, linear: DMat3) -> Recipe {
         settings: (settings.element_size.map(f64::to_bits), settings.local_solver),
         linear: linear.to_cols_array().map(f64::to_bits),
     }
+}
+
+/// The materials that look otherwise, emission scales left aside.
+fn repainted(look: &Look, paints: &[Paint]) -> Vec<Repainted> {
+    let repainted = |(number, paint): (usize, &Paint)| {
+        let new = look.repainted(paint);
+        let (old, new) = (paint.material(), new.material());
+        let differs = (old.reflectance, old.emission) != (new.reflectance, new.emission);
+        let material = MaterialId::from_index(number);
+        differs.then_some(Repainted { material, reflectance: new.reflectance, emission: new.emission })
+    };
+    paints.iter().enumerate().filter_map(repainted).collect()
 }
 
 fn remark(dropped: Dropped) -> String {

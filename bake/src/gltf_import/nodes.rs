@@ -3,10 +3,12 @@
 
 use super::document::Document;
 use super::extras::Extras;
+use super::repaint::{Look, Repaint};
 use equilux_formats::Result;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::Node;
 use gltf::scene::Transform;
+use std::rc::Rc;
 
 /// A node and what it inherits from the nodes above it.
 #[derive(Clone)]
@@ -15,14 +17,14 @@ pub(super) struct Placed<'a> {
     pub(super) extras: Extras,
     /// Node coordinates → coordinates of whatever the walk began in.
     pub(super) placement: DAffine3,
-    /// Product of the emission scales from the start of the walk to this node.
-    pub(super) emission_scale: f64,
+    /// What the nodes from the start of the walk to this one change about materials.
+    pub(super) look: Look,
 }
 
 impl<'a> Placed<'a> {
     /// The same node as a walk sees it that starts in the node itself.
     pub(super) fn as_origin(&self) -> Self {
-        Self { placement: DAffine3::IDENTITY, emission_scale: 1.0, ..self.clone() }
+        Self { placement: DAffine3::IDENTITY, look: Look::default(), ..self.clone() }
     }
 
     /// The name of the node.
@@ -40,8 +42,11 @@ impl<'a> Placed<'a> {
                 "correct the scales of the node and of those above it",
             ));
         }
-        let emission_scale = self.emission_scale * extras.emission_scale.unwrap_or(1.0);
-        Ok(Self { node, extras, placement, emission_scale })
+        let mut look = self.look.clone();
+        look.emission_scale *= extras.emission_scale.unwrap_or(1.0);
+        let repaint = |changes: &_| Rc::new(Repaint::new(&node, label(&node), changes));
+        look.repaints.extend(extras.materials.as_ref().map(repaint));
+        Ok(Self { node, extras, placement, look })
     }
 }
 
@@ -63,7 +68,7 @@ fn above_roots<'a>(any: &Node<'a>) -> Placed<'a> {
         node: any.clone(),
         extras: Extras::default(),
         placement: DAffine3::IDENTITY,
-        emission_scale: 1.0,
+        look: Look::default(),
     }
 }
 

@@ -8,6 +8,7 @@ use super::lights::light;
 use super::meshes::Meshes;
 use super::nodes::{Placed, roots, subtree};
 use super::notes::Notes;
+use super::repaint::Asked;
 use equilux_formats::{Error, Result};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -20,6 +21,7 @@ const DEEPEST: usize = 16;
 pub(super) struct PartFiles {
     pub(super) files: Files,
     pub(super) notes: Notes,
+    pub(super) asked: Asked,
     drafts: HashMap<PathBuf, Rc<Draft>>,
     /// The files that are being read, from the scene to the one whose reference is followed.
     chain: Vec<PathBuf>,
@@ -29,7 +31,13 @@ impl PartFiles {
     /// The files around `scene`.
     pub(super) fn around(scene: &Path) -> Result<Self> {
         let files = Files::around(scene)?;
-        Ok(Self { files, notes: Notes::default(), drafts: HashMap::new(), chain: Vec::new() })
+        Ok(Self {
+            files,
+            notes: Notes::default(),
+            asked: Asked::default(),
+            drafts: HashMap::new(),
+            chain: Vec::new(),
+        })
     }
 
     /// Reads the document at `path`; references from here on are its.
@@ -102,11 +110,18 @@ impl PartFiles {
         if let Some(reference) = &placed.extras.part {
             let (_, part) = self.draft(document, placed, reference)?;
             draft.settings.hear(part.settings, &placed.name(), &mut self.notes);
-            return draft.add_draft(document, &part, placed.placement, placed.emission_scale);
+            self.asked.hear(&placed.look, &part.paints.0);
+            for (_, placement) in placed.copies(document)? {
+                draft.add_draft(document, &part, placement, &placed.look)?;
+            }
+            return Ok(());
         }
         if let Some(mesh) = placed.node.mesh() {
             let mesh = meshes.get(&mesh, &mut self.notes)?;
-            draft.add_mesh(document, &mesh, placed.placement, placed.emission_scale)?;
+            self.asked.hear(&placed.look, mesh.primitives.iter().map(|(_, paint)| paint));
+            for (_, placement) in placed.copies(document)? {
+                draft.add_mesh(document, &mesh, placement, &placed.look)?;
+            }
         }
         if let Some(source) = placed.node.light() {
             draft.lights.push(light(document, placed, &source)?);

@@ -1,9 +1,10 @@
 //! Drafts → parts and instances. A placement becomes a similarity, as form factors do not change under one: what else
-//! the root's transform does is worked into the part. Then the part is moved so that its coordinates start at zero, and
-//! parts with equal contents become one.
+//! the root's transform does is worked into the part. Of a turned and stretched one only the stretch is, so that copies
+//! turned otherwise are still the same part. Then the part is moved so that its coordinates start at zero, and parts with
+//! equal contents become one.
 
-use super::drafts::{Draft, Materials, Settings, transformed};
-use super::materials::same_material;
+use super::drafts::{Draft, Paints, Settings, transformed};
+use super::materials::{Paint, same_material};
 use super::surfaces::{Dropped, Seen, f64_spacing, has_area};
 use equilux_formats::{Part, PartId, Surface};
 use glam::{DAffine3, DMat3, DVec3};
@@ -15,9 +16,17 @@ const SIMILARITY: f64 = 1e-6;
 
 /// Splits a root's transform in what is worked into the part and what places it.
 pub(super) fn split(transform: DAffine3) -> (DMat3, DAffine3) {
-    match is_similarity(transform.matrix3) {
-        true => (DMat3::IDENTITY, transform),
-        false => (transform.matrix3, DAffine3::from_translation(transform.translation)),
+    let linear = transform.matrix3;
+    if is_similarity(linear) {
+        return (DMat3::IDENTITY, transform);
+    }
+    // f32 is what files scale by: so it comes out the same to the bit however the node is turned.
+    let lengths = [linear.x_axis, linear.y_axis, linear.z_axis].map(|axis| f64::from(axis.length() as f32));
+    let stretch = DMat3::from_diagonal(DVec3::from_array(lengths));
+    let turn = linear * DMat3::from_diagonal(DVec3::from_array(lengths.map(f64::recip)));
+    match turn.is_finite() && is_similarity(turn) {
+        true => (stretch, DAffine3 { matrix3: turn, translation: transform.translation }),
+        false => (linear, DAffine3::from_translation(transform.translation)),
     }
 }
 
@@ -30,13 +39,19 @@ fn is_similarity(linear: DMat3) -> bool {
     square > 0.0 && off <= 2.0 * SIMILARITY * square
 }
 
-/// The part made of `draft` after `linear`, where its coordinates start in the draft's, and what was left out of it.
-pub(super) fn settle(
-    draft: &Draft,
-    linear: DMat3,
-    settings: Settings,
-    name: String,
-) -> (Part, DVec3, Dropped) {
+/// A part, and what is known of how it was made.
+pub(super) struct Settled {
+    pub(super) part: Part,
+    /// What its materials were made of, in their order.
+    pub(super) paints: Vec<Paint>,
+    /// Where its coordinates start in the draft's.
+    pub(super) start: DVec3,
+    /// What was left out of it.
+    pub(super) dropped: Dropped,
+}
+
+/// The part made of `draft` after `linear`.
+pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: String) -> Settled {
     let linear = DAffine3::from_mat3(linear);
     let placed = draft.surfaces.iter().map(|s| Surface { corners: transformed(&s.corners, linear), ..*s });
     let placed: Vec<Surface> = placed.filter(|surface| has_area(&surface.corners, rounding)).collect();
@@ -44,8 +59,8 @@ pub(super) fn settle(
 
     let mut dropped = draft.dropped;
     dropped.without_area += draft.surfaces.len() - placed.len();
-    let (mut surfaces, mut seen, mut materials) = (Vec::new(), Seen::default(), Materials::default());
-    let mut renumbered = vec![None; draft.materials.0.len()];
+    let (mut surfaces, mut seen, mut paints) = (Vec::new(), Seen::default(), Paints::default());
+    let mut renumbered = vec![None; draft.paints.0.len()];
     for surface in placed {
         // Adding 0 turns −0 into 0, so that equal parts are equal bit by bit.
         let corners = surface.corners.map(|corner| corner - start + 0.0);
@@ -56,13 +71,14 @@ pub(super) fn settle(
             dropped.duplicates += 1;
         } else {
             let old = surface.material.index();
-            let material =
-                *renumbered[old].get_or_insert_with(|| materials.id(draft.materials.0[old].clone()));
+            let material = *renumbered[old].get_or_insert_with(|| paints.id(draft.paints.0[old].clone()));
             surfaces.push(Surface { corners, material });
         }
     }
     let Settings { element_size, local_solver } = settings;
-    (Part { name, surfaces, materials: materials.0, element_size, local_solver }, start, dropped)
+    let materials = paints.0.iter().map(Paint::material).collect();
+    let part = Part { name, surfaces, materials, element_size, local_solver };
+    Settled { part, paints: paints.0, start, dropped }
 }
 
 /// What transforms may add to a coordinate of this magnitude: sums of a few rounded products.
@@ -80,17 +96,25 @@ fn lowest_corner(surfaces: &[Surface]) -> DVec3 {
 pub(super) struct Catalogue {
     pub(super) parts: Vec<Part>,
     by_content: HashMap<u64, Vec<PartId>>,
+    /// How many parts were to have each name.
+    named: HashMap<String, usize>,
 }
 
 impl Catalogue {
-    /// The id of the part with the contents of `part`.
-    pub(super) fn id(&mut self, part: Part) -> PartId {
+    /// The id of the part with the contents of `part`. Of parts that would have one name, such as a crate and a stretched
+    /// crate, the later ones are numbered: the cache remembers by name what a part was when it was last baked.
+    pub(super) fn id(&mut self, mut part: Part) -> PartId {
         let alike = self.by_content.entry(content_hash(&part)).or_default();
         if let Some(&known) = alike.iter().find(|id| same_content(&self.parts[id.index()], &part)) {
             return known;
         }
         let id = PartId::from_index(self.parts.len());
         alike.push(id);
+        let count = self.named.entry(part.name.clone()).or_default();
+        *count += 1;
+        if *count > 1 {
+            part.name = format!("{} ({count})", part.name);
+        }
         self.parts.push(part);
         id
     }
