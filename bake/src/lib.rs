@@ -24,6 +24,7 @@ pub mod oven;
 pub mod planes;
 pub mod prepare;
 pub mod shaft;
+pub mod solids;
 pub mod stamp;
 pub mod treecode;
 pub mod visibility;

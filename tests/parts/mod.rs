@@ -3,6 +3,7 @@
 
 mod bytes;
 mod compressed;
+mod inside;
 mod instances;
 mod left_out;
 mod overrides;

@@ -3,6 +3,7 @@
 use crate::coupling::Coupled;
 use crate::exchange::Node;
 use crate::placed::Placed;
+use crate::report::inside;
 
 /// A row that sums to more than this counts light twice. Rows end within 1e-5 of 1, and steps round less.
 const TOO_MUCH: f64 = 1.0 + 1e-4;
@@ -35,7 +36,7 @@ pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node]) -> Vec<String
             )
         })
     });
-    inside.chain(twice).chain(overlapping).collect()
+    inside.chain(twice).chain(overlapping).chain(inside::notes(placed)).collect()
 }
 
 /// Pairs of instances of one part in one place.

@@ -1,0 +1,141 @@
+//! Solids that reach into each other: elements that lie inside a closed solid can neither be seen nor be meant. In go parts in
+//! their places, out come sentences.
+//!
+//! Boxes leave few elements to look at. An element is inside if its centroid is, by more than a small share of its own
+//! size, so that what only touches is not; and if most of what it sees from there are the backs of that solid's part: what
+//! stands in a room inside a building's shell is inside that shell too, but sees the room.
+
+use crate::placed::Placed;
+use equilux_bake::solids::{Solid, solids};
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::world::World;
+use equilux_formats::{Element, Geometry, Instance};
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+
+/// An element counts as inside when its centroid lies deeper than this share of its size.
+const DEPTH: f64 = 1e-2;
+
+/// So many elements and pairs of parts are named, more are counted.
+const NAMED: usize = 3;
+
+/// A sentence for each instance with elements inside a solid, of the first few such pairs.
+pub fn notes(placed: &Placed) -> Vec<String> {
+    let parts: Vec<&Geometry> = placed.parts.iter().map(|part| &part.part.geometry).collect();
+    sentences(&elements_inside(&placed.world, &placed.instances, &parts), &placed.instances)
+}
+
+/// Elements that lie inside a solid, numbered through the scene, by their instance and the solid's.
+pub type Inside = BTreeMap<[usize; 2], Vec<usize>>;
+
+/// A sentence for each of the first few pairs of instances.
+pub fn sentences(inside: &Inside, instances: &[Instance]) -> Vec<String> {
+    let name = |k: usize| format!("`{}`", instances[k].name);
+    let sentence = |(&[own, other], elements): (&[usize; 2], &Vec<usize>)| {
+        let named: Vec<String> = elements.iter().take(NAMED).map(usize::to_string).collect();
+        let more = if elements.len() > NAMED { ", …" } else { "" };
+        let (count, whose) = (elements.len(), if own == other { "itself".into() } else { name(other) });
+        let (plural, lie) = if count == 1 { ("", "lies") } else { ("s", "lie") };
+        format!(
+            "{count} element{plural} of {} {lie} inside a solid of {whose}: {}{more}; move it out, or cut off what is hidden",
+            name(own),
+            named.join(", ")
+        )
+    };
+    let mut notes: Vec<String> = inside.iter().take(NAMED).map(sentence).collect();
+    if inside.len() > NAMED {
+        notes.push(format!("{} more pairs of parts reach into each other", inside.len() - NAMED));
+    }
+    notes
+}
+
+/// The elements of a world of instances of `parts` that lie inside solids.
+pub fn elements_inside(world: &World, instances: &[Instance], parts: &[&Geometry]) -> Inside {
+    let solids: Vec<Vec<Solid>> = parts.iter().map(|part| solids(part)).collect();
+    let mut inside = Inside::new();
+    let mut index = None;
+    for (other, instance) in instances.iter().enumerate() {
+        let (geometry, of_part) = (parts[instance.part.index()], &solids[instance.part.index()]);
+        if of_part.is_empty() {
+            continue;
+        }
+        let to_part = instance.placement.inverse();
+        for own in 0..instances.len() {
+            let mut found = Search { world, own, other, geometry, to_part }.elements(of_part);
+            if !found.is_empty() {
+                let index = index.get_or_insert_with(|| RayIndex::new(&world.elements));
+                found.retain(|&element| sees_backs(world, index, element, other));
+            }
+            if !found.is_empty() {
+                inside.insert([own, other], found);
+            }
+        }
+    }
+    inside
+}
+
+struct Search<'a> {
+    world: &'a World,
+    own: usize,
+    other: usize,
+    /// That of `other`.
+    geometry: &'a Geometry,
+    to_part: DAffine3,
+}
+
+impl Search<'_> {
+    /// The elements of `own` inside any of the solids of `other`.
+    fn elements(&self, solids: &[Solid]) -> Vec<usize> {
+        let Some(root) = self.world.root_of(self.own) else { return vec![] };
+        let node = &self.world.nodes[root];
+        let near: Vec<&Solid> =
+            solids.iter().filter(|solid| overlaps(solid, node.low, node.high, self.to_part)).collect();
+        let elements = self.world.elements_of(self.own);
+        elements.filter(|&number| near.iter().any(|solid| self.is_inside(number, solid))).collect()
+    }
+
+    fn is_inside(&self, number: usize, solid: &Solid) -> bool {
+        let element = &self.world.elements[number];
+        if self.own == self.other && solid.faces.binary_search(&self.face_in_part(element)).is_ok() {
+            return false;
+        }
+        // Areas scale by the square of lengths.
+        let scale = self.to_part.matrix3.determinant().abs().cbrt();
+        let depth = DEPTH * element.area.sqrt() * scale;
+        solid.holds(self.to_part.transform_point3(element.centroid), depth, &self.geometry.faces)
+    }
+
+    /// The face of an element of `other`, as the part numbers it.
+    fn face_in_part(&self, element: &Element) -> u32 {
+        let first = self.world.elements[self.world.elements_of(self.other).start].face.0;
+        element.face.0 - (first - self.geometry.elements[0].face.0)
+    }
+}
+
+/// Whether the box of a solid can meet a box of the scene.
+fn overlaps(solid: &Solid, low: DVec3, high: DVec3, to_part: DAffine3) -> bool {
+    let centre = to_part.transform_point3((low + high) / 2.0);
+    let half = (high - low) / 2.0;
+    let reach = to_part.matrix3.x_axis.abs() * half.x
+        + to_part.matrix3.y_axis.abs() * half.y
+        + to_part.matrix3.z_axis.abs() * half.z;
+    (centre - reach).cmple(solid.high).all() && (centre + reach).cmpge(solid.low).all()
+}
+
+/// Directions from an element: along its normal and leaning to four sides of it, as shares of normal and two tangents.
+const DIRECTIONS: [[f64; 3]; 5] =
+    [[1.0, 0.013, 0.029], [0.7, 0.6, 0.1], [0.7, -0.1, 0.6], [0.7, -0.6, -0.1], [0.7, 0.1, -0.6]];
+
+/// Whether most of what an element sees are backs of an instance.
+fn sees_backs(world: &World, index: &RayIndex, number: usize, other: usize) -> bool {
+    let element = &world.elements[number];
+    let corners = element.corners.as_slice();
+    let along = (corners[1] - corners[0]).normalize();
+    let across = element.normal.cross(along);
+    let start = element.centroid + element.normal * (1e-9 * element.area.sqrt());
+    let is_back = |[n, u, v]: &[f64; 3]| {
+        let hit = index.first_hit(start, element.normal * *n + along * *u + across * *v);
+        hit.is_some_and(|hit| !hit.front && world.elements_of(other).contains(&hit.element))
+    };
+    2 * DIRECTIONS.iter().filter(|direction| is_back(direction)).count() > DIRECTIONS.len()
+}
