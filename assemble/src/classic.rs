@@ -51,6 +51,7 @@ fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> 
             columns: 0..world.nodes.len(),
             already: None,
             resolution: EXACT,
+            revision: None,
         };
         let timed = block(&request, monitor)?;
         time += timed.time;

@@ -4,13 +4,14 @@
 //! scene; and F_kk as baked, or computed anew with the intruders in place. Everything in the scene blocks.
 
 use crate::hull::intruders;
+use crate::older::Older;
 use crate::placed::Placed;
-use equilux_bake::cached::{Origin, cached, foreseen};
-use equilux_bake::keys::{CORRECTED, COUPLING, placed_manifest};
+use equilux_bake::cached::{Made, Origin, cached, cached_or_revised, foreseen};
+use equilux_bake::keys::{CORRECTED, COUPLING, Known, placed_manifest};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::{light_manifest, local_equilibrium};
-use equilux_bake::treecode::{Request, Resolution, block};
-use equilux_formats::{BakedLight, Digest, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
+use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
+use equilux_bake::treecode::{Request, Resolution, Timed, block};
+use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
 use std::path::Path;
 use std::time::Duration;
 
@@ -20,6 +21,8 @@ pub struct Coupled {
     pub coupling: Rows,
     /// Where the coupling came from.
     pub origin: Origin,
+    /// Number of form factors computed for it.
+    pub computed: usize,
     /// F_kk with what stands inside the part, if anything does.
     pub corrected: Option<Corrected>,
     /// Time spent on form factors of the coupling, summed over threads.
@@ -36,6 +39,8 @@ pub struct Corrected {
     pub intruders: Vec<usize>,
     /// Where the block came from.
     pub origin: Origin,
+    /// Number of form factors computed for it.
+    pub computed: usize,
     /// Time spent on its form factors, summed over threads.
     pub time: Duration,
 }
@@ -99,9 +104,11 @@ impl Coupler<'_> {
             columns: 0..self.placed.world.nodes.len(),
             already: Some(&seen),
             resolution: self.resolution,
+            revision: None,
         };
-        let Some((coupling, origin, _, time)) = self.block(COUPLING, &request)? else { return Ok(None) };
-        Ok(Some(Coupled { coupling, origin, corrected, time }))
+        let Some(found) = self.block(COUPLING, request, None)? else { return Ok(None) };
+        let Block { rows: coupling, origin, computed, time, .. } = found;
+        Ok(Some(Coupled { coupling, origin, computed, corrected, time }))
     }
 
     /// Where the blocks of an instance would come from. Computes none of them.
@@ -129,45 +136,84 @@ impl Coupler<'_> {
             columns: self.placed.world.nodes_of(instance),
             already: None,
             resolution: self.resolution,
+            revision: None,
         };
-        let Some((self_block, origin, key, time)) = self.block(CORRECTED, &request)? else {
-            return Ok(None);
-        };
-        // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
+        // The part alone is a scene too: what stands inside appeared in it.
         let part = &self.placed.part_of(instance).part;
+        let alone = Older::alone(self.placed, instance, &intruders);
+        let Some(found) = self.block(CORRECTED, request, Some(alone))? else { return Ok(None) };
+        let Block { rows: self_block, origin, computed, key, time } = found;
+        // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let optics = self.placed.paint_of(instance);
-        let manifest = light_manifest(key, &optics, part.local.solver);
+        let manifest = light_manifest(key.into(), &optics, part.local.solver);
         let name = self.name(instance, "corrected light");
         let (light, _) = cached(self.store, &name, &manifest, self.monitor, || {
             let local = local_equilibrium(&self_block, &part.geometry, &optics, part.local.solver);
             Ok(Some(BakedLight { optics: optics.clone(), local }))
         })?
         .expect("a local equilibrium is not stopped halfway");
-        Ok(Some(Corrected { self_block, local: light.local, intruders, origin, time }))
+        Ok(Some(Corrected { self_block, local: light.local, intruders, origin, computed, time }))
     }
 
-    fn block(&self, what: &str, request: &Request) -> Result<Option<(Rows, Origin, Digest, Duration)>> {
+    /// The block that is asked for: from the cache, or from an older one as far as what changed since cannot matter, or
+    /// from `otherwise`, or from the start.
+    fn block(&self, what: &str, request: Request, otherwise: Option<Older>) -> Result<Option<Block>> {
         let instance = request.receivers;
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
-        let mut time = Duration::ZERO;
-        let found = cached(self.store, &name, &manifest, self.monitor, || {
+        let (mut time, mut computed) = (Duration::ZERO, 0);
+        let found = cached_or_revised(self.store, &name, &manifest, self.monitor, || {
             let receivers = self.placed.world.elements_of(instance).len();
             self.monitor.begin(format!("{what} of {}", self.placed.instances[instance].name), receivers);
-            Ok(block(request, self.monitor).map(|timed| {
-                time = timed.time;
-                timed.block
+            let last = self.store.last_manifest(&name).and_then(|last| {
+                Older::last(self.placed, self.store, instance, &last, &manifest, request.columns.clone())
+            });
+            let older = last.or(otherwise);
+            let in_place = older.as_ref().is_some_and(|older| older.has_columns(request.columns.clone()));
+            let revision = older.as_ref().map(Older::revision);
+            Ok(block(&Request { revision, ..request }, self.monitor).map(|timed| {
+                (time, computed) = (timed.time, timed.computed);
+                made(timed, older.as_ref().map(|older| older.key.filter(|_| in_place)))
             }))
         })?;
-        Ok(found.map(|(rows, origin)| (rows, origin, manifest.key().into(), time)))
+        Ok(found.map(|(rows, origin)| {
+            let key = self.store.target(&manifest.key());
+            Block { rows, origin, key, computed, time }
+        }))
     }
 
     fn name(&self, instance: usize, what: &str) -> String {
-        format!("{what} of instance {instance} in {}", self.file.display())
+        let instances = &self.placed.instances;
+        let name = &instances[instance].name;
+        let twins = instances[..instance].iter().filter(|other| other.name == *name).count();
+        format!("{what} of {name} #{twins} in {}", self.file.display())
     }
 
     fn manifest(&self, instance: usize, what: &str) -> Manifest {
-        let part_keys: Vec<Key> = self.placed.parts.iter().map(|part| part.key).collect();
-        placed_manifest(&self.placed.instances, &part_keys, self.resolution, instance, what)
+        let known = |part: &Baked| Known { key: part.key, senders: part.part.geometry.clusters.nodes() };
+        let parts: Vec<Known> = self.placed.parts.iter().map(known).collect();
+        placed_manifest(&self.placed.instances, &parts, self.resolution, instance, what)
+    }
+}
+
+/// A block and how it came about.
+struct Block {
+    rows: Rows,
+    origin: Origin,
+    /// The key under which it lies.
+    key: Key,
+    computed: usize,
+    time: Duration,
+}
+
+/// What was made: of an older block, if there was one, and of the one under a key, if it is the same column by column.
+fn made(timed: Timed, older: Option<Option<Key>>) -> Made<Rows> {
+    match older {
+        None => Made::Whole(timed.block),
+        Some(Some(key)) if timed.is_unchanged => Made::AsUnder(key, timed.block),
+        Some(_) => {
+            let share = 100.0 * timed.computed as f64 / timed.block.stored().max(1) as f64;
+            Made::Revised(timed.block, format!("{share:.1} % of its form factors"))
+        }
     }
 }

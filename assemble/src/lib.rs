@@ -15,6 +15,7 @@ pub mod exchange;
 pub mod exposure;
 pub mod gltf_export;
 pub mod hull;
+mod older;
 pub mod output_file;
 mod outputs;
 pub mod picture;

@@ -1,7 +1,7 @@
 //! Take from the cache, or compute and keep; and say which and why, from the same manifest that makes the key.
 
 use crate::monitor::Monitor;
-use equilux_formats::{Lookup, Manifest, Result, Store, Stored, Turn};
+use equilux_formats::{Key, Lookup, Manifest, Result, Store, Stored, Turn};
 use std::time::Duration;
 
 /// Where a result came from.
@@ -9,6 +9,8 @@ use std::time::Duration;
 pub enum Origin {
     /// It was in the cache.
     Reused,
+    /// It was in the cache, made from something else, but that changes nothing; what changed.
+    Unchanged(String),
     /// It was computed, for this reason.
     Computed(String),
 }
@@ -16,7 +18,7 @@ pub enum Origin {
 impl Origin {
     /// Whether nothing had to be computed.
     pub fn is_reused(&self) -> bool {
-        *self == Self::Reused
+        !matches!(self, Self::Computed(_))
     }
 }
 
@@ -24,6 +26,7 @@ impl std::fmt::Display for Origin {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Reused => write!(f, "reused: all inputs are unchanged"),
+            Self::Unchanged(reason) => write!(f, "reused: {reason}, and nothing of that matters here"),
             Self::Computed(reason) => write!(f, "computed: {reason}"),
         }
     }
@@ -49,6 +52,16 @@ fn look_up<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> std::re
 /// How often it is asked whether another process is done.
 const PATIENCE: Duration = Duration::from_millis(50);
 
+/// How a value was made that the cache did not have.
+pub enum Made<T> {
+    /// From the start.
+    Whole(T),
+    /// By bringing an older one up to date; how much of it, for a person.
+    Revised(T, String),
+    /// It is what already lies under this key.
+    AsUnder(Key, T),
+}
+
 /// The value that `manifest` describes; `name` is what its older versions were called. Of all processes that share the
 /// cache one computes it, the others wait for that one. `compute` returns none if it was stopped, and then so does this.
 /// It must not ask for anything cached itself: see [`Store::try_turn`].
@@ -58,6 +71,17 @@ pub fn cached<T: Stored>(
     manifest: &Manifest,
     monitor: &Monitor,
     compute: impl FnOnce() -> Result<Option<T>>,
+) -> Result<Option<(T, Origin)>> {
+    cached_or_revised(store, name, manifest, monitor, || Ok(compute()?.map(Made::Whole)))
+}
+
+/// The same where `make` may know an older value to start from.
+pub fn cached_or_revised<T: Stored>(
+    store: &Store,
+    name: &str,
+    manifest: &Manifest,
+    monitor: &Monitor,
+    make: impl FnOnce() -> Result<Option<Made<T>>>,
 ) -> Result<Option<(T, Origin)>> {
     let mut found = look_up(store, name, manifest);
     let mut _turn = None;
@@ -69,9 +93,18 @@ pub fn cached<T: Stored>(
     let (value, origin) = match found {
         Ok(value) => (value, Origin::Reused),
         Err(reason) => {
-            let Some(value) = compute()? else { return Ok(None) };
-            store.save(manifest, &value)?;
-            (value, Origin::Computed(reason))
+            let Some(made) = make()? else { return Ok(None) };
+            if let Made::Whole(value) | Made::Revised(value, _) = &made {
+                store.save(manifest, value)?;
+            }
+            match made {
+                Made::Whole(value) => (value, Origin::Computed(reason)),
+                Made::Revised(value, how) => (value, Origin::Computed(format!("{reason}; {how}"))),
+                Made::AsUnder(key, value) => {
+                    store.save_alias(manifest, &key)?;
+                    (value, Origin::Unchanged(reason))
+                }
+            }
         }
     };
     store.remember(name, manifest)?;

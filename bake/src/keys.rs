@@ -11,7 +11,8 @@ use crate::gltf_import::import_scene;
 use crate::oven::{KERNEL_VERSION, geometry_manifest, light_manifest};
 use crate::prepare::{Preparation, Prepared, prepare};
 use crate::treecode::Resolution;
-use equilux_formats::{Content, Instance, Key, Manifest, Result, Store, Swept};
+use equilux_formats::{Instance, Key, Manifest, Result, Store, Swept};
+use glam::DAffine3;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
@@ -25,13 +26,13 @@ pub const CORRECTED: &str = "corrected self block";
 pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Result<Swept> {
     let mut keys = HashSet::new();
     for file in files {
-        keys.extend(keys_of(&prepare(&import_scene(file)?, wanted)?, wanted.resolution));
+        keys.extend(keys_of(&prepare(&import_scene(file)?, wanted)?, wanted.resolution, store));
     }
     store.keep_only(&keys)
 }
 
 /// The keys under which `assemble` looks for the parts of a scene and for what couples them.
-pub fn keys_of(scene: &Prepared, resolution: Resolution) -> HashSet<Key> {
+pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashSet<Key> {
     let part_keys: Vec<Key> =
         scene.parts.iter().map(|part| geometry_manifest(part, resolution).key()).collect();
     let mut keys = HashSet::new();
@@ -39,37 +40,118 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution) -> HashSet<Key> {
         let light = light_manifest(key.into(), &part.optics, part.solver);
         keys.extend([key, light.key()]);
     }
+    let parts: Vec<Known> = part_keys
+        .iter()
+        .zip(&scene.parts)
+        .map(|(&key, part)| Known { key, senders: part.geometry.clusters.nodes() })
+        .collect();
     for number in 0..scene.instances.len() {
-        let key = |what| placed_manifest(&scene.instances, &part_keys, resolution, number, what).key();
+        let key = |what| placed_manifest(&scene.instances, &parts, resolution, number, what).key();
         let part = &scene.parts[scene.instances[number].part.index()];
         let optics = repainted(&part.geometry, &part.optics, &scene.instances[number].repainted);
         let own = part_keys[scene.instances[number].part.index()];
         let light = |block: Key| light_manifest(block.into(), &optics, part.solver).key();
-        keys.extend([key(COUPLING), key(CORRECTED), light(key(CORRECTED)), light(own)]);
+        let [coupling, corrected] = [key(COUPLING), key(CORRECTED)];
+        let target = store.target(&corrected);
+        keys.extend([coupling, store.target(&coupling), corrected, target, light(target), light(own)]);
     }
     keys
 }
 
+/// What manifests of blocks tell of a part.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    /// The key of its form factors.
+    pub key: Key,
+    /// The number of its senders, elements and clusters.
+    pub senders: usize,
+}
+
+/// Another instance as one sees it: what a manifest of a block tells of it, so that of an older block it is known what it
+/// was made among.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seen {
+    /// Its part.
+    pub part: Key,
+    /// The number of its senders.
+    pub senders: usize,
+    /// Its placement as seen from the one, in steps of 2^`exponent`.
+    steps: [i64; 12],
+    exponent: i32,
+}
+
+/// Steps in which placements are told, in powers of two below their largest number: rounding does not make another place.
+const FINE: i32 = 40;
+
+impl Seen {
+    /// A part at a place.
+    pub fn new(part: Known, placement: DAffine3) -> Self {
+        let numbers = placement.to_cols_array();
+        let most = numbers.iter().fold(f64::MIN_POSITIVE, |most: f64, n| most.max(n.abs()));
+        let exponent = most.log2().ceil() as i32 - FINE;
+        let steps = numbers.map(|n| (n / 2f64.powi(exponent)).round() as i64);
+        Self { part: part.key, senders: part.senders, steps, exponent }
+    }
+
+    /// Where it stands, as seen from the one.
+    pub fn placement(&self) -> DAffine3 {
+        DAffine3::from_cols_array(&self.steps.map(|step| step as f64 * 2f64.powi(self.exponent)))
+    }
+}
+
+impl std::fmt::Display for Seen {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} {} {}", self.part, self.senders, self.exponent)?;
+        self.steps.iter().try_for_each(|step| write!(f, " {step}"))
+    }
+}
+
+impl std::str::FromStr for Seen {
+    type Err = ();
+
+    /// Reads what is displayed.
+    fn from_str(text: &str) -> std::result::Result<Self, ()> {
+        let mut words = text.split(' ');
+        let mut next = || words.next().ok_or(());
+        let part = next()?.parse()?;
+        let senders = next()?.parse().map_err(|_| ())?;
+        let exponent = next()?.parse().map_err(|_| ())?;
+        let mut steps = [0; 12];
+        for step in &mut steps {
+            *step = next()?.parse().map_err(|_| ())?;
+        }
+        Ok(Self { part, senders, steps, exponent })
+    }
+}
+
 /// Everything that a block of an instance depends on: its part, and every other instance, its part and where it stands as
-/// seen from this one. `part_keys` are those of the parts' own form factors.
+/// seen from this one. `parts` tells of the parts' own form factors.
 pub fn placed_manifest(
     instances: &[Instance],
-    part_keys: &[Key],
+    parts: &[Known],
     resolution: Resolution,
     instance: usize,
     what: &str,
 ) -> Manifest {
-    let key_of = |instance: &Instance| part_keys[instance.part.index()];
+    let part_of = |instance: &Instance| parts[instance.part.index()];
     let inverse = instances[instance].placement.inverse();
     let mut manifest = Manifest::new()
         .setting("block", what)
         .setting("kernel", KERNEL_VERSION)
         .setting("resolution", resolution)
-        .digest("the part", key_of(&instances[instance]));
+        .digest("the part", part_of(&instances[instance]).key);
     for (number, other) in instances.iter().enumerate().filter(|&(n, _)| n != instance) {
-        let relative = inverse * other.placement;
-        let seen = Content::new().bytes(key_of(other).to_string()).f64s(&relative.to_cols_array());
-        manifest = manifest.digest(format!("instance {number} ({})", other.name), seen.digest());
+        let seen = Seen::new(part_of(other), inverse * other.placement);
+        manifest = manifest.detail(format!("instance {number} ({})", other.name), seen);
     }
     manifest
+}
+
+/// The other instances that a manifest of a block tells of, by their numbers; none if it is not such a manifest.
+pub fn seen_in(manifest: &Manifest) -> Option<Vec<(usize, Seen)>> {
+    let read = |(label, text): (&str, &str)| {
+        let number = label.strip_prefix("instance ")?.split(' ').next()?.parse().ok()?;
+        Some((number, text.parse().ok()?))
+    };
+    manifest.details().map(read).collect()
 }

@@ -64,6 +64,7 @@ impl Oven<'_> {
                 columns: world.nodes_of(0),
                 already: None,
                 resolution: self.resolution,
+                revision: None,
             };
             Ok(block(&request, self.monitor).map(|timed| {
                 form_factor_time = timed.time;

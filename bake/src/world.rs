@@ -19,6 +19,8 @@ pub struct World {
     /// The faces and solids by place.
     pub occluders: Occluders,
     instances: Vec<Placed>,
+    /// The cluster around every node; its own number for a root.
+    parents: Vec<u32>,
 }
 
 /// The planes that faces lie in, by number, and the instances they belong to.
@@ -90,7 +92,8 @@ impl World {
         }
         let planes = Planes { in_scene: planes::group(&faces), in_part, instance };
         let occluders = Occluders::new(&faces);
-        Self { elements, faces, planes, nodes, occluders, instances }
+        let parents = parents(&nodes);
+        Self { elements, faces, planes, nodes, occluders, instances, parents }
     }
 
     /// Whether two faces lie in one plane, so that neither lights or hides anything of the other. Within an instance
@@ -116,6 +119,11 @@ impl World {
         self.instances[instance].root
     }
 
+    /// The cluster around a node; none for a root.
+    pub fn parent_of(&self, node: u32) -> Option<u32> {
+        Some(self.parents[node as usize]).filter(|&parent| parent != node)
+    }
+
     /// Number of geometries.
     pub fn instances(&self) -> usize {
         self.instances.len()
@@ -132,6 +140,14 @@ impl World {
         let number = node - placed.nodes.start;
         (number < placed.elements.len()).then(|| placed.elements.start + number)
     }
+}
+
+fn parents(nodes: &[Node]) -> Vec<u32> {
+    let mut parents: Vec<u32> = (0..nodes.len() as u32).collect();
+    for (number, node) in nodes.iter().enumerate() {
+        node.children.iter().flatten().for_each(|&child| parents[child as usize] = number as u32);
+    }
+    parents
 }
 
 /// A mirrored placement turns the order of the corners around, so that they stay counter-clockwise from the front.

@@ -36,11 +36,13 @@ pub enum Kind {
     Coupling,
     /// Only a manifest: what something was last made from.
     Manifest,
+    /// Only a manifest and a key: what was made from something else, and would be the same.
+    Alias,
 }
 
 impl Kind {
     /// All kinds.
-    pub(crate) const ALL: [Self; 4] = [Self::Part, Self::Light, Self::Coupling, Self::Manifest];
+    pub(crate) const ALL: [Self; 5] = [Self::Part, Self::Light, Self::Coupling, Self::Manifest, Self::Alias];
 
     /// The four bytes in the header.
     fn code(self) -> [u8; 4] {
@@ -49,6 +51,7 @@ impl Kind {
             Self::Light => *b"LGHT",
             Self::Coupling => *b"COUP",
             Self::Manifest => *b"MANI",
+            Self::Alias => *b"ALIA",
         }
     }
 
@@ -59,6 +62,7 @@ impl Kind {
             Self::Light => "light",
             Self::Coupling => "coupling",
             Self::Manifest => "manifest",
+            Self::Alias => "alias",
         }
     }
 }

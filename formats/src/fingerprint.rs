@@ -45,6 +45,15 @@ impl fmt::Debug for Key {
     }
 }
 
+impl std::str::FromStr for Key {
+    type Err = ();
+
+    /// Reads what is displayed.
+    fn from_str(text: &str) -> Result<Self, ()> {
+        Digest::from_hex(text).map(Self).ok_or(())
+    }
+}
+
 impl From<Key> for Digest {
     fn from(key: Key) -> Self {
         key.0
@@ -93,11 +102,12 @@ struct Entry {
     value: Value,
 }
 
-/// A setting is short enough to be told; of larger content only a digest is kept.
+/// A setting is short enough to be told, a detail is not; of larger content only a digest is kept.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Value {
     Setting(String),
+    Detail(String),
     Digest(Digest),
 }
 
@@ -110,6 +120,28 @@ impl Manifest {
     /// Adds a setting, with its unit: `("element size", "0.25 m")`. Panics when the label is taken.
     pub fn setting(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
         self.with(label.into(), Value::Setting(value.to_string()))
+    }
+
+    /// Adds a setting that is too long to be told, but may be asked for by [`Manifest::details`]. Panics when the label is taken.
+    pub fn detail(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
+        self.with(label.into(), Value::Detail(value.to_string()))
+    }
+
+    /// The details, with their labels, in order.
+    pub fn details(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.entries.iter().filter_map(|entry| match &entry.value {
+            Value::Detail(text) => Some((entry.label.as_str(), text.as_str())),
+            _ => None,
+        })
+    }
+
+    /// Whether the two differ in details at most.
+    pub fn is_alike(&self, other: &Self) -> bool {
+        let rest = |manifest: &Self| -> Vec<Entry> {
+            let entries = manifest.entries.iter().filter(|entry| !matches!(entry.value, Value::Detail(_)));
+            entries.cloned().collect()
+        };
+        rest(self) == rest(other)
     }
 
     /// Adds content by its digest, or another result by its key. Panics when the label is taken.
@@ -133,6 +165,7 @@ impl Manifest {
             let content = content.bytes(&entry.label);
             match &entry.value {
                 Value::Setting(text) => content.bytes("setting").bytes(text),
+                Value::Detail(text) => content.bytes("detail").bytes(text),
                 Value::Digest(digest) => content.bytes("digest").bytes(digest.0),
             }
         });
@@ -161,7 +194,7 @@ impl Entry {
             (Some(Value::Setting(old)), Value::Setting(new)) => Some(format!("{label} was {old}, is {new}")),
             (Some(_), _) => Some(format!("{label} changed")),
             (None, Value::Setting(new)) => Some(format!("{label} is new, {new}")),
-            (None, Value::Digest(_)) => Some(format!("{label} is new")),
+            (None, Value::Detail(_) | Value::Digest(_)) => Some(format!("{label} is new")),
         }
     }
 }

@@ -28,6 +28,8 @@ pub struct RowGroup {
     pub values: Vec<f64>,
     /// Number of receivers.
     pub receivers: usize,
+    /// Steps to keep the numbers in, one a receiver, if they were kept in these before; without any, what suits each row.
+    pub steps: Option<Vec<f64>>,
 }
 
 /// A block of exact form factors, `receivers × senders`.
@@ -67,7 +69,7 @@ impl Rows {
     pub fn from_rows(senders: usize, rows: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Self {
         let group = |row: Vec<(u32, f64)>| {
             let (columns, values) = row.into_iter().unzip();
-            RowGroup { columns, values, receivers: 1 }
+            RowGroup { columns, values, receivers: 1, steps: None }
         };
         Self::from_groups(senders, rows.into_iter().map(group), Precision::Full)
     }
@@ -111,7 +113,8 @@ impl Rows {
             Values::Steps { steps, unit } => {
                 for receiver in 0..group.receivers {
                     let row = &group.values[receiver * group.columns.len()..][..group.columns.len()];
-                    unit.push(quantise(row, steps));
+                    let before = group.steps.as_ref().map(|before| before[receiver]);
+                    unit.push(quantise(row, before, steps));
                 }
             }
         }
@@ -163,6 +166,22 @@ impl Rows {
         self.groups.len() - 1
     }
 
+    /// The group that a receiver is in.
+    pub fn group_of(&self, receiver: usize) -> usize {
+        self.groups.partition_point(|g| g.receiver <= receiver) - 1
+    }
+
+    /// The columns of a group and its numbers, `receivers × columns`, by receiver.
+    pub fn values_of(&self, group: usize) -> (&[u32], Vec<f64>) {
+        let columns = self.columns_of(group);
+        let first = self.groups[group].value;
+        let row = |(k, receiver): (usize, usize)| {
+            let from = first + k * columns.len();
+            (from..from + columns.len()).map(move |index| self.value(index, receiver))
+        };
+        (columns, self.receivers_of(group).enumerate().flat_map(row).collect())
+    }
+
     /// The receivers of a group.
     pub fn receivers_of(&self, group: usize) -> std::ops::Range<usize> {
         self.groups[group].receiver..self.groups[group + 1].receiver
@@ -170,7 +189,7 @@ impl Rows {
 
     /// The (sender, form factor) pairs of one row that are not zero.
     pub fn row(&self, receiver: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let group = self.groups.partition_point(|g| g.receiver <= receiver) - 1;
+        let group = self.group_of(receiver);
         let columns = self.columns_of(group);
         let first = self.groups[group].value + (receiver - self.groups[group].receiver) * columns.len();
         let pairs =
@@ -292,10 +311,15 @@ fn dot(row: impl Iterator<Item = f64>, seen: &[Rgb]) -> Rgb {
     sum
 }
 
+/// A step of an earlier row does if it is at most this much coarser than needed.
+const COARSER: f64 = 4.0;
+
 /// Append the row in steps of its largest entry; returns the size of a step. The error of each entry goes into the
-/// next (first-order noise shaping), so that partial sums are never off by more than half a step.
-fn quantise(row: &[f64], steps: &mut Vec<u16>) -> f64 {
-    let unit = row.iter().copied().fold(0.0, f64::max) / f64::from(u16::MAX);
+/// next (first-order noise shaping), so that partial sums are never off by more than half a step. Numbers that were kept
+/// in steps before stay what they are if that step still does.
+fn quantise(row: &[f64], before: Option<f64>, steps: &mut Vec<u16>) -> f64 {
+    let suits = row.iter().copied().fold(0.0, f64::max) / f64::from(u16::MAX);
+    let unit = before.filter(|&before| before >= suits && before <= COARSER * suits).unwrap_or(suits);
     let mut carried = 0.0;
     for &value in row {
         let wanted = if unit > 0.0 { value / unit + carried } else { 0.0 };

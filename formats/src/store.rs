@@ -68,8 +68,9 @@ impl Store {
         self.folder.join(format!("{}-{}.eqx", kind.noun(), key.into()))
     }
 
-    /// Looks for what was made from the manifest with this key.
+    /// Looks for what was made from the manifest with this key, or would be the same.
     pub fn load<T: Stored>(&self, key: &Key) -> Lookup<T> {
+        let key = &self.target(key);
         let path = self.path(T::KIND, *key);
         if matches!(path.try_exists(), Ok(false)) {
             return Lookup::Missing;
@@ -97,6 +98,28 @@ impl Store {
         value.write(manifest).write_to(&path)?;
         self.note_use(path);
         Ok(())
+    }
+
+    /// Notes that what would be made from what `manifest` lists is what lies under another key.
+    pub fn save_alias(&self, manifest: &Manifest, target: &Key) -> Result<()> {
+        let path = self.path(Kind::Alias, manifest.key());
+        Writer::new(Kind::Alias, manifest, &self.target(target)).write_to(&path)?;
+        self.note_use(path);
+        Ok(())
+    }
+
+    /// The key under which what belongs under this key really lies: another one if it has an alias, else the same.
+    pub fn target(&self, key: &Key) -> Key {
+        let path = self.path(Kind::Alias, *key);
+        let read = || {
+            let reader = Reader::open(&path, Kind::Alias).ok()?;
+            reader.meta().ok().filter(|_| reader.manifest().key() == *key)
+        };
+        let target = if path.exists() { read() } else { None };
+        if target.is_some() {
+            self.note_use(path);
+        }
+        target.unwrap_or(*key)
     }
 
     /// What the thing called `name` was last made from, if that is known.

@@ -50,8 +50,9 @@ fn light() -> BakedLight {
 }
 
 fn coupling() -> Rows {
-    let together = RowGroup { columns: vec![0, 4], values: vec![0.125, 1e-9, 0.0, 0.25], receivers: 2 };
-    let alone = RowGroup { columns: vec![2], values: vec![1.0], receivers: 1 };
+    let together =
+        RowGroup { columns: vec![0, 4], values: vec![0.125, 1e-9, 0.0, 0.25], receivers: 2, steps: None };
+    let alone = RowGroup { columns: vec![2], values: vec![1.0], receivers: 1, steps: None };
     Rows::from_groups(5, [together, alone], Precision::Steps)
 }
 

@@ -176,6 +176,7 @@ impl Scene {
             columns,
             already: None,
             resolution,
+            revision: None,
         };
         let rows = block(&request, &Monitor::default()).expect("nobody stops it");
         let defect = rows.row_sums.iter().map(|sum| (sum - 1.0).abs()).fold(0.0, f64::max);

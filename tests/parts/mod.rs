@@ -3,6 +3,7 @@
 
 mod bytes;
 mod compressed;
+mod edits;
 mod inside;
 mod instances;
 mod left_out;

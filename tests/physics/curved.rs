@@ -33,6 +33,7 @@ fn rows(world: &World, resolution: Resolution) -> Vec<Timed> {
             columns: columns.clone(),
             already: None,
             resolution,
+            revision: None,
         };
         block(&request, &Monitor::default()).expect("nobody stops it")
     };

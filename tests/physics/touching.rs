@@ -50,8 +50,15 @@ fn defect(things: &[Part]) -> f64 {
     let world = World::new(all.iter().map(|geometry| (geometry, DAffine3::IDENTITY)));
     let senders: Vec<usize> = (0..world.instances()).collect();
     let columns = 0..world.nodes.len();
-    let request =
-        Request { world: &world, receivers: 0, senders: &senders, columns, already: None, resolution: EXACT };
+    let request = Request {
+        world: &world,
+        receivers: 0,
+        senders: &senders,
+        columns,
+        already: None,
+        resolution: EXACT,
+        revision: None,
+    };
     let rows = block(&request, &Monitor::default()).expect("nobody stops it");
     rows.row_sums.iter().map(|sum| (sum - 1.0).abs()).fold(0.0, f64::max)
 }

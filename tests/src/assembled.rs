@@ -33,7 +33,15 @@ impl Assembled {
     ) -> Self {
         let world = World::new(geometries.iter().map(|g| (g, DAffine3::IDENTITY)));
         let rows = |receivers: usize, senders: &[usize], columns| {
-            let request = Request { world: &world, receivers, senders, columns, already: None, resolution };
+            let request = Request {
+                world: &world,
+                receivers,
+                senders,
+                columns,
+                already: None,
+                resolution,
+                revision: None,
+            };
             block(&request, &Monitor::default()).expect("nobody stops it").block
         };
         let all = 0..geometries.len();

@@ -64,6 +64,7 @@ impl Level {
                 columns: 0..self.world.nodes.len(),
                 already: None,
                 resolution,
+                revision: None,
             };
             let timed = block(&request, &Monitor::default()).expect("nobody stops it");
             measured.time += timed.time;

@@ -188,6 +188,7 @@ impl Step {
     fn of(origin: &Origin) -> Self {
         match origin {
             Origin::Reused => Self { how: "reused", reason: "all inputs are unchanged".into() },
+            Origin::Unchanged(_) => Self { how: "reused", reason: origin.to_string() },
             Origin::Computed(reason) => Self::computed(reason),
         }
     }

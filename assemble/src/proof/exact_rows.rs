@@ -85,6 +85,7 @@ fn exact_rows(placed: &Placed, clusters: &[Chosen], monitor: &Monitor) -> Option
         columns: 0..world.nodes.len(),
         already: Some(&seen),
         resolution: EXACT,
+        revision: None,
     };
     let timed = block(&request, monitor)?;
     Some((timed.block, timed.time))

@@ -190,10 +190,9 @@ fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
 
 fn form_factors_computed(placed: &Placed, coupled: &[Coupled]) -> usize {
     let own = placed.parts.iter().filter(|p| !p.form_factors.is_reused()).map(|p| p.part.self_block.stored());
-    let corrected = coupled.iter().filter_map(|c| c.corrected.as_ref());
-    let anew = corrected.filter(|c| !c.origin.is_reused()).map(|c| c.self_block.stored());
-    let coupling = coupled.iter().filter(|c| !c.origin.is_reused()).map(|c| c.coupling.stored());
-    own.chain(anew).chain(coupling).sum()
+    let corrected = coupled.iter().filter_map(|own| own.corrected.as_ref()).map(|block| block.computed);
+    let coupling = coupled.iter().map(|own| own.computed);
+    own.chain(corrected).chain(coupling).sum()
 }
 
 fn memory(nodes: &[Node], elements: usize) -> Bytes {

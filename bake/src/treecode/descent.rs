@@ -27,6 +27,10 @@ pub struct Found {
     pub groups: Vec<RowGroup>,
     /// Their sums.
     pub sums: Vec<f64>,
+    /// Number of form factors that were computed.
+    pub computed: usize,
+    /// Number of groups that are not what they were before; all, if there is no before.
+    pub changed: usize,
     /// Time summed over threads.
     pub time: Duration,
 }
@@ -73,6 +77,8 @@ impl<'a> Descent<'a> {
         Found {
             groups: [left.groups, right.groups].into_iter().flatten().collect(),
             sums: [left.sums, right.sums].concat(),
+            computed: left.computed + right.computed,
+            changed: left.changed + right.changed,
             time: time + left.time + right.time,
         }
     }
@@ -81,9 +87,15 @@ impl<'a> Descent<'a> {
         if self.monitor.stopped() {
             return Found::default();
         }
-        let (rows, sums) = Search::rows(self.request, group.elements.clone(), frontier);
+        let rows = Search::rows(self.request, group.elements.clone(), frontier);
         self.monitor.advance(group.elements.len());
-        Found { groups: vec![rows], sums, time: start.elapsed() }
+        Found {
+            groups: vec![rows.group],
+            sums: rows.sums,
+            computed: rows.computed,
+            changed: usize::from(rows.is_changed),
+            time: start.elapsed(),
+        }
     }
 }
 
@@ -109,7 +121,7 @@ impl<'a> Frontier<'a> {
             open.push((node, candidates.adopt(list)));
             while let Some((node, list)) = open.pop() {
                 let sender = &request.world.nodes[node as usize];
-                if viewers.cannot_see(sender, request.world) {
+                if viewers.cannot_see(sender, request.world) || is_untouched(request, viewers, node) {
                     continue;
                 }
                 let Verdict::Between(kept) = candidates.narrow(list, viewers, sender) else { continue };
@@ -126,6 +138,16 @@ impl<'a> Frontier<'a> {
         }
         narrowed
     }
+}
+
+/// Whether nothing that changed can matter to a sender of which no part above it can have had an entry: only flat ones
+/// have. What lies inside a flat sender is looked at entry by entry, later.
+fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
+    let Some(revision) = &request.revision else { return false };
+    let sender = &request.world.nodes[node as usize];
+    sender.polygon.is_empty()
+        && !revision.change.anew[request.world.instance_of_node(node as usize)]
+        && !revision.change.touches(request.world, viewers, sender)
 }
 
 fn stays_closed(sender: &Node, viewers: &Viewers) -> bool {

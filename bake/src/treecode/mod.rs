@@ -12,6 +12,7 @@ mod cones;
 mod descent;
 mod pieces;
 mod receivers;
+pub mod revision;
 mod search;
 mod seen_meshes;
 mod terminal;
@@ -21,6 +22,7 @@ use crate::monitor::Monitor;
 use crate::world::World;
 use descent::Descent;
 use equilux_formats::{Precision, Rows};
+use revision::Revision;
 use std::ops::Range;
 use std::time::Duration;
 pub(crate) use viewers::box_corners;
@@ -73,6 +75,10 @@ pub struct Timed {
     pub block: Rows,
     /// Σ_j F_ij of every receiver as computed, before the numbers are rounded for keeping.
     pub row_sums: Vec<f64>,
+    /// Number of form factors that were computed: all, unless an older block was brought up to date.
+    pub computed: usize,
+    /// Whether an older block stays as it was, but for the numbers of its columns.
+    pub is_unchanged: bool,
     /// Time summed over threads.
     pub time: Duration,
 }
@@ -91,6 +97,8 @@ pub struct Request<'a> {
     pub already: Option<&'a [f64]>,
     /// How exactly.
     pub resolution: Resolution,
+    /// The block as it was before the scene changed, if it is only to be brought up to date.
+    pub revision: Option<Revision<'a>>,
 }
 
 /// Compute a block on all threads. None if the monitor was stopped.
@@ -100,5 +108,11 @@ pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
         return None;
     }
     let block = Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
-    Some(Timed { block, row_sums: found.sums, time: found.time })
+    Some(Timed {
+        block,
+        row_sums: found.sums,
+        computed: found.computed,
+        is_unchanged: found.changed == 0,
+        time: found.time,
+    })
 }

@@ -3,6 +3,7 @@
 use super::candidates::{Candidates, Verdict};
 use super::descent::Frontier;
 use super::receivers::Receivers;
+use super::revision::Revised;
 use super::terminal::Evaluator;
 use super::{MISSED, Request};
 use crate::world::Node;
@@ -44,6 +45,20 @@ pub struct Search<'a> {
     columns: Vec<u32>,
     values: Vec<f64>,
     missing: Vec<f64>,
+    /// The rows as they were, if they are only to be brought up to date.
+    revised: Option<Revised<'a>>,
+}
+
+/// Rows of one cluster of receivers.
+pub struct Found {
+    /// The rows.
+    pub group: RowGroup,
+    /// Their sums.
+    pub sums: Vec<f64>,
+    /// Number of form factors that were computed.
+    pub computed: usize,
+    /// Whether they are not what they were before.
+    pub is_changed: bool,
 }
 
 /// A sender that has not been looked at, nearest first.
@@ -55,6 +70,9 @@ struct Open {
     levels: u32,
     /// What the last try of a cluster above promised to err by.
     tried: f64,
+    /// Whether it is to be looked at even if nothing that changed can matter to it: it, or a cluster around it, has lost its
+    /// entry.
+    lost: bool,
 }
 
 /// What came of a sender.
@@ -67,21 +85,27 @@ enum Taken {
 
 impl<'a> Search<'a> {
     /// The rows of some elements on one side of one face, and their sums.
-    pub fn rows(
-        request: &'a Request<'a>,
-        elements: Range<usize>,
-        frontier: &Frontier<'a>,
-    ) -> (RowGroup, Vec<f64>) {
+    pub fn rows(request: &'a Request<'a>, elements: Range<usize>, frontier: &Frontier<'a>) -> Found {
         let own = request.world.elements_of(request.receivers).start;
-        let missing = match request.already {
+        let missing: Vec<f64> = match request.already {
             Some(seen) => elements.clone().map(|i| 1.0 - seen[i - own]).collect(),
             None => vec![1.0; elements.len()],
         };
+        let receivers = Receivers::new(request.world, elements.clone());
+        let revised = request.revision.as_ref();
+        let revised = revised.map(|revision| Revised::new(request, revision, &receivers.viewers, &elements));
+        let missing = match &revised {
+            Some(revised) => {
+                missing.iter().zip(revised.seen()).map(|(m, seen): (&f64, f64)| m - seen).collect()
+            }
+            None => missing,
+        };
         let search = Self {
+            revised,
             request,
             candidates: Candidates::none(request.world),
             evaluator: Evaluator::new(request.world),
-            receivers: Receivers::new(request.world, elements),
+            receivers,
             queue: BinaryHeap::new(),
             columns: vec![],
             values: vec![],
@@ -90,10 +114,11 @@ impl<'a> Search<'a> {
         search.run(frontier)
     }
 
-    fn run(mut self, frontier: &Frontier<'a>) -> (RowGroup, Vec<f64>) {
+    fn run(mut self, frontier: &Frontier<'a>) -> Found {
         for (node, list) in frontier.senders() {
-            let list = self.candidates.adopt(list);
-            self.open(node, list, 0, f64::INFINITY);
+            let candidates = self.candidates.adopt(list);
+            let lost = self.has_lost(node);
+            self.open(Open { distance: 0.0, node, candidates, levels: 0, tried: f64::INFINITY, lost });
         }
         let enough = if self.request.resolution.opening == 0.0 { COMPLETE } else { NEARLY_COMPLETE };
         while let Some(next) = self.queue.pop() {
@@ -105,17 +130,39 @@ impl<'a> Search<'a> {
         self.finish()
     }
 
-    fn open(&mut self, node: u32, candidates: Range<usize>, levels: u32, tried: f64) {
-        let distance = self.receivers.viewers.distance_to(&self.request.world.nodes[node as usize]);
-        self.queue.push(Open { distance, node, candidates, levels, tried });
+    fn open(&mut self, open: Open) {
+        let distance = self.receivers.viewers.distance_to(&self.request.world.nodes[open.node as usize]);
+        self.queue.push(Open { distance, ..open });
     }
 
-    fn visit(&mut self, Open { node, candidates, levels, tried, .. }: Open) {
+    /// Whether a sender or a cluster around it has lost its entry.
+    fn has_lost(&self, node: u32) -> bool {
+        let (Some(revised), Some(revision)) = (&self.revised, &self.request.revision) else { return false };
+        let world = self.request.world;
+        if revision.change.anew[world.instance_of_node(node as usize)] {
+            return true;
+        }
+        std::iter::successors(Some(node), |&node| world.parent_of(node)).any(|node| revised.has_dropped(node))
+    }
+
+    /// Whether the entries of a sender, or that it has none, are as they were.
+    fn is_as_before(&self, node: u32, lost: bool) -> bool {
+        let Some(revision) = self.request.revision.as_ref().filter(|_| !lost) else { return false };
+        let (world, viewers) = (self.request.world, &self.receivers.viewers);
+        !revision.change.touches(world, viewers, &world.nodes[node as usize])
+    }
+
+    fn visit(&mut self, Open { node, candidates, levels, tried, lost, .. }: Open) {
         let sender = &self.request.world.nodes[node as usize];
         let viewers = &self.receivers.viewers;
         if viewers.cannot_see(sender, self.request.world) {
             return;
         }
+        let lost = lost || self.revised.as_ref().is_some_and(|revised| revised.has_dropped(node));
+        if self.is_as_before(node, lost) {
+            return;
+        }
+        let viewers = &self.receivers.viewers;
         let opening = self.request.resolution.opening;
         let error = if sender.children.is_none() { 0.0 } else { self.error(sender) };
         // Lists are narrowed where it may decide something, and every few levels at least.
@@ -138,7 +185,10 @@ impl<'a> Search<'a> {
         };
         if let (Taken::TooMuch, Some(children)) = (found, sender.children) {
             let tried = if may_end { error.min(tried) } else { tried };
-            children.into_iter().for_each(|child| self.open(child, kept.clone(), levels, tried));
+            for child in children {
+                let candidates = kept.clone();
+                self.open(Open { distance: 0.0, node: child, candidates, levels, tried, lost });
+            }
         }
     }
 
@@ -170,6 +220,7 @@ impl<'a> Search<'a> {
         let occluders = self.candidates.slice(candidates);
         if !self.evaluator.evaluate(&self.receivers, sender, occluders, &mut self.values) {
             self.values.truncate(first);
+            self.cover(node);
             return Taken::Done;
         }
         if self.values[first..].iter().any(|&value| value > most) {
@@ -180,12 +231,30 @@ impl<'a> Search<'a> {
             *missing -= value;
         }
         self.columns.push(node - self.request.columns.start as u32);
+        self.cover(node);
         Taken::Done
     }
 
+    /// What lies inside a sender that is done with has no entries of its own.
+    fn cover(&mut self, node: u32) {
+        let Some(revised) = &mut self.revised else { return };
+        let gone = revised.cover(self.request.world, node);
+        self.missing.iter_mut().zip(gone).for_each(|(missing, gone)| *missing += gone);
+    }
+
     /// Columns in rising order, values by receiver.
-    fn finish(self) -> (RowGroup, Vec<f64>) {
+    fn finish(mut self) -> Found {
         let receivers = self.receivers.count();
+        let computed = self.values.len();
+        let (mut is_changed, mut steps) = (true, None);
+        if let Some(revised) = &self.revised {
+            is_changed = computed > 0 || !revised.is_unchanged();
+            steps = Some(revised.steps());
+            for (node, values) in revised.entries() {
+                self.columns.push(node - self.request.columns.start as u32);
+                self.values.extend(values);
+            }
+        }
         let mut order: Vec<usize> = (0..self.columns.len()).collect();
         order.sort_unstable_by_key(|&k| self.columns[k]);
         let columns = order.iter().map(|&k| self.columns[k]).collect();
@@ -194,7 +263,7 @@ impl<'a> Search<'a> {
             (0..receivers).flat_map(row).map(|(k, i)| self.values[k * receivers + i]).collect();
         let width = order.len();
         let sums = (0..receivers).map(|i| values[i * width..(i + 1) * width].iter().sum()).collect();
-        (RowGroup { columns, values, receivers }, sums)
+        Found { group: RowGroup { columns, values, receivers, steps }, sums, computed, is_changed }
     }
 }
 

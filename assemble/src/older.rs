@@ -1,0 +1,151 @@
+//! A block of an instance as it was when the scene was another, and what changed since. The manifest from which the older
+//! block was made tells of every instance that was there; in goes that, out comes what the treecode needs to bring the
+//! block up to date.
+
+use crate::placed::Placed;
+use equilux_bake::keys::{Seen, seen_in};
+use equilux_bake::treecode::revision::{Change, Revision};
+use equilux_formats::{BakedGeometry, Geometry, Key, Lookup, Manifest, Rows, Store};
+use glam::DAffine3;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// An older block.
+pub struct Older<'a> {
+    rows: Cow<'a, Rows>,
+    /// The key under which it lies; none for a part's own.
+    pub key: Option<Key>,
+    /// The sender of each of its columns.
+    senders: Vec<Option<u32>>,
+    change: Change,
+}
+
+/// Above this share of new or gone instances it pays no more to look for what stays.
+const MOST_CHANGED: f64 = 0.5;
+
+impl<'a> Older<'a> {
+    /// A part's own block, in which what stands inside was not there.
+    pub fn alone(placed: &'a Placed, instance: usize, intruders: &[usize]) -> Self {
+        let part = &placed.part_of(instance).part;
+        let mut change = Change::none(placed.instances.len());
+        for &intruder in intruders {
+            let geometry = &placed.part_of(intruder).part.geometry;
+            change.add(geometry, placed.instances[intruder].placement);
+        }
+        let senders = placed.world.nodes_of(instance).map(|node| Some(node as u32)).collect();
+        Self { rows: Cow::Borrowed(&part.self_block), key: None, senders, change }
+    }
+
+    /// The block that was made from what `last` lists, where now `wanted` is asked for; none if it is of another part or
+    /// made in another way, too much is new, or it is not in the cache any more. `columns` are those of the block wanted.
+    pub fn last(
+        placed: &Placed,
+        store: &Store,
+        instance: usize,
+        last: &Manifest,
+        wanted: &Manifest,
+        columns: Range<usize>,
+    ) -> Option<Self> {
+        if !last.is_alike(wanted) {
+            return None;
+        }
+        let (before, now) = (seen_in(last)?, seen_in(wanted)?);
+        let stays = stays(&before, &now);
+        let new = (0..now.len()).filter(|n| !stays.contains(&Some(*n)));
+        let gone = (0..before.len()).filter(|&b| stays[b].is_none());
+        if (new.clone().count() + gone.clone().count()) as f64 > MOST_CHANGED * now.len() as f64 {
+            return None;
+        }
+        let own = placed.instances[instance].placement;
+        let mut change = Change::none(placed.instances.len());
+        for (number, seen) in new.map(|n| &now[n]) {
+            change.anew[*number] = true;
+            change.add(&placed.part_of(*number).part.geometry, own * seen.placement());
+        }
+        for (_, seen) in gone.map(|b| &before[b]) {
+            add_part(placed, store, seen.part, own * seen.placement(), &mut change)?;
+        }
+        let key = store.target(&last.key());
+        let Lookup::Found(rows) = store.load::<Rows>(&key) else { return None };
+        let senders = if columns == placed.world.nodes_of(instance) {
+            columns.map(|node| Some(node as u32)).collect()
+        } else {
+            senders(placed, instance, &before, &now, &stays)
+        };
+        (senders.len() == rows.senders()).then_some(Self {
+            rows: Cow::Owned(rows),
+            key: Some(key),
+            senders,
+            change,
+        })
+    }
+
+    /// For the treecode.
+    pub fn revision(&self) -> Revision<'_> {
+        Revision { old: &self.rows, senders: &self.senders, change: &self.change }
+    }
+
+    /// Whether its columns are those of a block with these.
+    pub fn has_columns(&self, columns: Range<usize>) -> bool {
+        self.senders.iter().copied().eq(columns.map(|node| Some(node as u32)))
+    }
+}
+
+/// For each instance that was there the one that is there now: the same part in the same place.
+fn stays(before: &[(usize, Seen)], now: &[(usize, Seen)]) -> Vec<Option<usize>> {
+    let mut free: Vec<bool> = vec![true; now.len()];
+    let mut find = |seen: &Seen| {
+        let found = (0..now.len()).find(|&n| free[n] && now[n].1 == *seen)?;
+        free[found] = false;
+        Some(found)
+    };
+    before.iter().map(|(_, seen)| find(seen)).collect()
+}
+
+fn add_part(
+    placed: &Placed,
+    store: &Store,
+    key: Key,
+    placement: DAffine3,
+    change: &mut Change,
+) -> Option<()> {
+    let known = placed.parts.iter().find(|part| part.key == key);
+    let read: Geometry;
+    let geometry = match known {
+        Some(baked) => &baked.part.geometry,
+        None => {
+            let Lookup::Found(baked) = store.load::<BakedGeometry>(&key) else { return None };
+            read = baked.geometry;
+            &read
+        }
+    };
+    change.add(geometry, placement);
+    Some(())
+}
+
+/// The sender of each column of a coupling that was made among the instances `before`.
+fn senders(
+    placed: &Placed,
+    instance: usize,
+    before: &[(usize, Seen)],
+    now: &[(usize, Seen)],
+    stays: &[Option<usize>],
+) -> Vec<Option<u32>> {
+    let nodes_of = |k: usize| placed.world.nodes_of(k).map(|node| Some(node as u32));
+    // Among the others the instance itself had the number that none of them has.
+    let own = (0..).zip(before).find(|(n, (number, _))| n != number).map_or(before.len(), |(n, _)| n);
+    let mut senders = Vec::new();
+    for (place, (_, seen)) in before.iter().enumerate() {
+        if place == own {
+            senders.extend(nodes_of(instance));
+        }
+        match stays[place] {
+            Some(n) => senders.extend(nodes_of(now[n].0)),
+            None => senders.extend(std::iter::repeat_n(None, seen.senders)),
+        }
+    }
+    if own == before.len() {
+        senders.extend(nodes_of(instance));
+    }
+    senders
+}

@@ -1,0 +1,171 @@
+//! What a change of the scene can touch of a block. In go the block as it was and what appeared or disappeared since; out
+//! comes, for each group of receivers, which of its entries stay and which senders have to be looked for again.
+//!
+//! Light between receivers and a sender passes through their shaft, so an entry whose shaft misses everything that changed
+//! stays as it is. Senders that were hidden have no entry and may be seen now: so it is the two hierarchies that are walked
+//! down where shafts touch the change, not the entries.
+
+use super::Request;
+use super::viewers::Viewers;
+use crate::shaft::Shaft;
+use crate::world::{Node, World};
+use equilux_formats::{Geometry, Rows};
+use glam::{DAffine3, DVec3};
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+/// What appeared in a scene or disappeared from it.
+pub struct Change {
+    things: Vec<Thing>,
+    /// For each instance whether all of its senders are looked for again: it is new, or somewhere else.
+    pub anew: Vec<bool>,
+}
+
+/// Something convex that hides.
+struct Thing {
+    low: DVec3,
+    high: DVec3,
+    corners: Vec<DVec3>,
+}
+
+/// A block to be brought up to date.
+pub struct Revision<'a> {
+    /// The block as it was, of the same receivers.
+    pub old: &'a Rows,
+    /// The sender of each of its columns; none if it is gone.
+    pub senders: &'a [Option<u32>],
+    /// What changed since.
+    pub change: &'a Change,
+}
+
+impl Change {
+    /// Nothing, in a scene of so many instances.
+    pub fn none(instances: usize) -> Self {
+        Self { things: vec![], anew: vec![false; instances] }
+    }
+
+    /// Something appeared, or was there before.
+    pub fn add(&mut self, geometry: &Geometry, placement: DAffine3) {
+        let alone = World::new([(geometry, placement)]);
+        let things = alone.occluders.all.into_iter();
+        self.things.extend(things.map(|o| Thing { low: o.low, high: o.high, corners: o.corners }));
+    }
+
+    /// Whether there is none.
+    pub fn is_none(&self) -> bool {
+        self.things.is_empty() && !self.anew.contains(&true)
+    }
+
+    /// Whether light from the sender to the viewers may have changed.
+    pub fn touches(&self, world: &World, viewers: &Viewers, sender: &Node) -> bool {
+        let mut shaft = Shaft::between(viewers.bounds, (sender.low, sender.high));
+        if let Some(flat) = &viewers.flat {
+            shaft.bound(viewers.hull[0], -flat.normal);
+        }
+        if let Some(side) = sender.side {
+            shaft.bound(world.faces[side.face.index()].corners[0], -side.normal);
+        }
+        let touches = |thing: &Thing| {
+            !shaft.misses_box(thing.low, thing.high)
+                && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
+        };
+        self.things.iter().any(touches)
+    }
+}
+
+/// A group of rows on its way from what it was to what it will be. Values by receiver.
+pub struct Revised<'a> {
+    revision: &'a Revision<'a>,
+    group: usize,
+    /// All old values, `receivers × columns`.
+    values: Vec<f64>,
+    /// The old columns that stay, by their sender.
+    kept: HashMap<u32, usize>,
+    /// Senders whose old entries do not.
+    dropped: HashSet<u32>,
+}
+
+impl<'a> Revised<'a> {
+    /// The group of some receivers.
+    pub fn new(
+        request: &'a Request<'a>,
+        revision: &'a Revision<'a>,
+        viewers: &Viewers,
+        elements: &Range<usize>,
+    ) -> Self {
+        let world = request.world;
+        let group = revision.old.group_of(elements.start - world.elements_of(request.receivers).start);
+        let (columns, values) = revision.old.values_of(group);
+        let (mut kept, mut dropped) = (HashMap::new(), HashSet::new());
+        for (place, &column) in columns.iter().enumerate() {
+            let Some(sender) = revision.senders[column as usize] else { continue };
+            let node = &world.nodes[sender as usize];
+            let anew = revision.change.anew[world.instance_of_node(sender as usize)];
+            if anew || revision.change.touches(world, viewers, node) {
+                dropped.insert(sender);
+            } else {
+                kept.insert(sender, place);
+            }
+        }
+        Self { revision, group, values, kept, dropped }
+    }
+
+    fn receivers(&self) -> usize {
+        self.revision.old.receivers_of(self.group).len()
+    }
+
+    /// The values of an old column.
+    fn column(&self, place: usize) -> impl Iterator<Item = f64> + '_ {
+        let width = self.values.len() / self.receivers();
+        (0..self.receivers()).map(move |i| self.values[i * width + place])
+    }
+
+    /// What the receivers see by the entries that stay.
+    pub fn seen(&self) -> Vec<f64> {
+        let mut seen = vec![0.0; self.receivers()];
+        // In order, so that rounding does not depend on the hash.
+        let mut places: Vec<usize> = self.kept.values().copied().collect();
+        places.sort_unstable();
+        for place in places {
+            seen.iter_mut().zip(self.column(place)).for_each(|(seen, value)| *seen += value);
+        }
+        seen
+    }
+
+    /// Whether a sender itself has lost its entry.
+    pub fn has_dropped(&self, sender: u32) -> bool {
+        self.dropped.contains(&sender)
+    }
+
+    /// Whether the rows stay as they are.
+    pub fn is_unchanged(&self) -> bool {
+        self.dropped.is_empty() && self.kept.len() * self.receivers() == self.values.len()
+    }
+
+    /// A sender has got one entry: what lies inside it gives up its own. Returns what the receivers saw by these.
+    pub fn cover(&mut self, world: &World, sender: u32) -> Vec<f64> {
+        let mut gone = vec![0.0; self.receivers()];
+        let mut open = vec![sender];
+        while let Some(node) = open.pop() {
+            if let Some(place) = self.kept.remove(&node) {
+                gone.iter_mut().zip(self.column(place)).for_each(|(gone, value)| *gone += value);
+            } else if let Some(children) = world.nodes[node as usize].children {
+                open.extend(children);
+            }
+        }
+        gone
+    }
+
+    /// The entries that stay, each a sender with its values.
+    pub fn entries(&self) -> Vec<(u32, Vec<f64>)> {
+        let mut entries: Vec<(u32, Vec<f64>)> =
+            self.kept.iter().map(|(&sender, &place)| (sender, self.column(place).collect())).collect();
+        entries.sort_unstable_by_key(|entry| entry.0);
+        entries
+    }
+
+    /// The steps in which the old numbers were kept, one a receiver: with the same steps they stay the same.
+    pub fn steps(&self) -> Vec<f64> {
+        self.revision.old.receivers_of(self.group).map(|i| self.revision.old.step_of(i)).collect()
+    }
+}

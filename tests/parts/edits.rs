@@ -1,0 +1,193 @@
+//! An edited scene takes from the cache what the edit cannot have changed, and nothing else: after each of many edits the
+//! blocks are those that are computed from nothing.
+
+use equilux_assemble::coupling::{Coupled, Coupler};
+use equilux_assemble::placed::Placed;
+use equilux_bake::elements::ElementSize;
+use equilux_bake::gltf_import::import_scene;
+use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::Oven;
+use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::treecode::{EXACT, Resolution};
+use equilux_formats::{Rows, Store};
+use equilux_tests::model::{Model, Node};
+use equilux_tests::rooms::{half, paint};
+use equilux_tests::shapes::{coupling, joined, moved, solid};
+use equilux_tests::workshop::Workshop;
+use glam::{DAffine3, DQuat, DVec3, dvec3};
+use std::path::Path;
+
+/// Places for things to stand, a metre wide each.
+const PLACES: usize = 8;
+
+/// A crate, or two on each other.
+#[derive(Debug, Clone, PartialEq)]
+struct Thing {
+    name: usize,
+    size: DVec3,
+    angle: f64,
+    twofold: bool,
+    jitter: DVec3,
+    place: usize,
+    colour: f64,
+    light: f64,
+}
+
+impl Thing {
+    fn node(&self) -> Node {
+        let mut material = paint([self.colour; 3]);
+        material.emission = [self.light; 3];
+        let half = self.size / 2.0;
+        let mut boxes = vec![solid(material.clone(), -half, half)];
+        if self.twofold {
+            let top = DVec3::Y * (self.size.y + 0.125);
+            boxes.push(solid(material, top - half * 0.5, top + half * 0.5));
+        }
+        let turned = moved(joined(boxes), DAffine3::from_quat(DQuat::from_rotation_y(self.angle)));
+        let at = dvec3(0.5 + (self.place % 4) as f64, 0.6, 0.5 + (self.place / 4) as f64) + self.jitter;
+        Node { at, ..Node::new(&format!("thing {}", self.name), turned) }
+    }
+}
+
+/// Numbers that look random and are the same every time (Knuth's multiplier).
+struct Dice(u64);
+
+impl Dice {
+    fn roll(&mut self, sides: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % sides
+    }
+
+    fn share(&mut self) -> f64 {
+        self.roll(1024) as f64 / 1024.0
+    }
+
+    fn thing(&mut self, name: usize, place: usize) -> Thing {
+        Thing {
+            name,
+            size: dvec3(0.25, 0.25, 0.25) + dvec3(self.share(), self.share(), self.share()) * 0.25,
+            angle: if self.roll(2) == 0 { 0.0 } else { self.share() },
+            twofold: self.roll(3) == 0,
+            jitter: dvec3(self.share(), self.share(), self.share()) * 0.125,
+            place,
+            colour: self.share(),
+            light: self.share(),
+        }
+    }
+}
+
+/// Change one thing of the scene, and say what.
+fn edit(things: &mut Vec<Thing>, dice: &mut Dice, number: usize) -> String {
+    let free: Vec<usize> =
+        (0..PLACES).filter(|place| things.iter().all(|thing| thing.place != *place)).collect();
+    let which = dice.roll(things.len());
+    let anything = dice.thing(things[which].name, things[which].place);
+    let thing = &mut things[which];
+    let what = match dice.roll(7) {
+        0 if !free.is_empty() => {
+            thing.place = free[dice.roll(free.len())];
+            "moved to another place"
+        }
+        0 | 1 => {
+            thing.jitter = anything.jitter;
+            "moved a little"
+        }
+        2 => {
+            thing.angle = dice.share();
+            "turned"
+        }
+        // The same number of elements in another shape.
+        3 => {
+            thing.size = anything.size;
+            "replaced"
+        }
+        4 => {
+            (thing.colour, thing.light) = (anything.colour, anything.light);
+            "repainted and relit"
+        }
+        5 if things.len() > 2 => {
+            things.remove(which);
+            "removed"
+        }
+        _ if !free.is_empty() => {
+            let place = free[dice.roll(free.len())];
+            things.insert(which, dice.thing(100 + number, place));
+            "added"
+        }
+        _ => {
+            things.swap(0, which);
+            "put first"
+        }
+    };
+    format!("edit {number}, {which} of {}: {what}", things.len())
+}
+
+/// All blocks of a scene, and how many form factors were computed for them.
+fn blocks(file: &Path, cache: &Path, resolution: Resolution) -> (Placed, Vec<Coupled>, usize) {
+    let wanted = Preparation {
+        element_size: Some(ElementSize::Metres(0.5)),
+        division: Division::Authored,
+        resolution,
+        local_solver: None,
+    };
+    let prepared = prepare(&import_scene(file).expect("a scene"), &wanted).expect("elements");
+    let (store, monitor) = (Store::open(cache).expect("a cache"), Monitor::default());
+    let oven = Oven { store: &store, file, resolution, monitor: &monitor };
+    let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked").expect("not stopped"));
+    let placed = Placed::new(parts.collect(), prepared.instances);
+    let coupler = Coupler { placed: &placed, store: &store, file, resolution, monitor: &monitor };
+    let couple = |k: usize| coupler.couple(k).expect("coupled").expect("not stopped");
+    let coupled: Vec<Coupled> = (0..placed.instances.len()).map(couple).collect();
+    let computed = coupled.iter().map(|c| c.computed + c.corrected.as_ref().map_or(0, |c| c.computed)).sum();
+    (placed, coupled, computed)
+}
+
+fn scene(things: &[Thing]) -> Model {
+    let rooms = [("left", 0.0), ("right", 2.0)];
+    let rooms = rooms.map(|(name, from)| Node::new(name, half(paint([0.5; 3]), from)));
+    let nodes: Vec<Node> = rooms.into_iter().chain(things.iter().map(Thing::node)).collect();
+    Model::of(&nodes)
+}
+
+/// Largest difference of an instance's blocks from its rows of the whole matrix, entry by entry.
+fn difference(placed: &Placed, instance: usize, blocks: &Coupled, whole: &Rows) -> f64 {
+    let (own, first) =
+        (blocks.self_block(&placed.part_of(instance).part.self_block), placed.world.nodes_of(instance).start);
+    let row = |i: usize| {
+        let mut row = vec![0.0; whole.senders()];
+        whole.row(i).for_each(|(sender, value)| row[sender] += value);
+        own.row(i).for_each(|(sender, value)| row[first + sender] -= value);
+        blocks.coupling.row(i).for_each(|(sender, value)| row[sender] -= value);
+        row.into_iter().map(f64::abs).fold(0.0, f64::max)
+    };
+    (0..whole.receivers()).map(row).fold(0.0, f64::max)
+}
+
+#[test]
+fn after_two_hundred_edits_every_form_factor_is_that_of_the_whole_matrix() {
+    let (workshop, mut dice) = (Workshop::new(), Dice(7));
+    let mut things: Vec<Thing> = (0..4).map(|place| dice.thing(place, 2 * place)).collect();
+    let (file, cache) = (workshop.path("scene.glb"), workshop.path("cache"));
+    scene(&things).write(&file);
+    blocks(&file, &cache, EXACT);
+    let (mut computed_now, mut computed_fresh) = (0, 0);
+    for number in 0..200 {
+        let what = edit(&mut things, &mut dice, number);
+        scene(&things).write(&file);
+        let (placed, now, computed) = blocks(&file, &cache, EXACT);
+        let everyone: Vec<usize> = (0..placed.instances.len()).collect();
+        for (k, now) in now.iter().enumerate() {
+            let whole = coupling(&placed.world, k, &everyone, EXACT);
+            let off = difference(&placed, k, now, &whole);
+            // Entries are the same numbers, or sums of the same clipped terms in another order: some 1e-16 each.
+            assert!(
+                off <= 1e-12,
+                "{what}: a form factor of `{}` is off by {off:e}",
+                placed.instances[k].name
+            );
+            computed_fresh += whole.stored();
+        }
+        computed_now += computed;
+    }
+    assert!(computed_now < computed_fresh / 2, "{computed_now} computed, {computed_fresh} if from nothing");
+}
