@@ -4,7 +4,7 @@ use crate::exchange::{Goal, Method};
 use crate::plan::{Plan, plan};
 use crate::proof::sample::ExactRows;
 use crate::report::Report;
-use crate::run::{Job, run};
+use crate::run::{Job, Pictures, run};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use equilux_bake::cli::{options::SceneOptions, progress};
 use serde::Serialize;
@@ -55,6 +55,13 @@ struct Assembly {
     /// bound; 0 measures nothing
     #[arg(long, value_name = "N|all", default_value = "256", value_parser = exact_rows)]
     exact_rows: ExactRows,
+    /// Start from the light of the last run with --warm instead of darkness, and keep this run's: fewer
+    /// rounds after a small change. The bytes of the outputs then depend on what ran before
+    #[arg(long)]
+    warm: bool,
+    /// Which pictures to draw; the result as a model is always written
+    #[arg(long, value_name = "WHICH", default_value = "rounds")]
+    pictures: Drawn,
     /// Also solve the classic whole-scene matrix and print the largest difference
     #[arg(long)]
     verify: bool,
@@ -77,6 +84,17 @@ enum Exchange {
     GaussSeidel,
     /// GMRES, always with a coarse space of the parts' answers to light from outside
     Gmres,
+}
+
+/// The pictures' name on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Drawn {
+    /// Of rounds, of the end, and of the elements
+    Rounds,
+    /// Of the end
+    Last,
+    /// None
+    None,
 }
 
 const EXAMPLES: &str = "\
@@ -146,6 +164,12 @@ impl Assembly {
             },
             exact_rows: self.exact_rows,
             verify: self.verify,
+            warm: self.warm,
+            pictures: match self.pictures {
+                Drawn::Rounds => Pictures::Rounds,
+                Drawn::Last => Pictures::Last,
+                Drawn::None => Pictures::None,
+            },
             elements: self.elements.clone(),
             depfile: self.depfile.clone(),
             cache_limit: self.options.cache_limit,

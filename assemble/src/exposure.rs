@@ -4,7 +4,6 @@
 //! t(x) = x up to the knee s = 0.8 and t(x) = 1 − (1 − s)·exp(−(x − s)/(1 − s)) above: one smooth curve that leaves
 //! most of the picture as it is and lets lamps fade into white.
 
-use crate::canvas::Canvas;
 use equilux_formats::Rgb;
 use std::f64::consts::PI;
 
@@ -18,13 +17,17 @@ const BELOW_KNEE: f64 = 0.95;
 pub struct Exposure(pub f64);
 
 impl Exposure {
-    /// Brings the luminance that 95 % of what the canvas shows stay below up to 0.8. Lamps do not count, unless they
-    /// are all that shines; where nothing does the factor is 1.
+    /// Brings the luminance that 95 % of what is shown stay below up to 0.8. Lamps do not count, unless they are all that
+    /// shines; where nothing does the factor is 1.
     ///
-    /// `radiosity` and `emission`: W/m², one row an element.
-    pub fn choose(canvas: &Canvas, radiosity: &[Rgb], emission: &[Rgb]) -> Self {
+    /// `shown`: the elements, as often as they count. `radiosity` and `emission`: W/m², one row an element.
+    pub fn choose<I: Iterator<Item = usize>>(
+        shown: impl Fn() -> I,
+        radiosity: &[Rgb],
+        emission: &[Rgb],
+    ) -> Self {
         let lit = |lamps: bool| {
-            let counts = canvas.elements().filter(|&e| lamps || emission[e] == [0.0; 3]);
+            let counts = shown().filter(|&e| lamps || emission[e] == [0.0; 3]);
             bright(counts.map(|e| luminance(radiosity[e]) / PI).filter(|light| light.is_normal()).collect())
         };
         Self(lit(false).or_else(|| lit(true)).map_or(1.0, |light| KNEE / light))

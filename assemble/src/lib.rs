@@ -26,3 +26,4 @@ pub mod report;
 pub mod run;
 pub mod scene_light;
 mod steps;
+mod warm;

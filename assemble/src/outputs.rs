@@ -7,7 +7,7 @@ use crate::exchange::Outcome;
 use crate::exposure::Exposure;
 use crate::picture::{shade, wireframe, write_png};
 use crate::placed::Placed;
-use crate::run::Job;
+use crate::run::{Job, Pictures};
 use crate::scene_light::SceneLight;
 use crate::{elements_csv, gltf_export};
 use equilux_bake::monitor::Monitor;
@@ -63,15 +63,35 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     let folder = job.out.join(&scene.name);
     prepare_folder(&folder)?;
     let elements = &light.placed.world.elements;
-    let index = RayIndex::new(elements);
-    let canvas = Canvas::trace(View::of_scene(&scene.cameras, elements, &index), &index);
-    let exposure = Exposure::choose(&canvas, &light.outcome.radiosity, &light.optics.emission);
+    let mut lines = Vec::new();
+    let exposure = if job.pictures == Pictures::None {
+        Exposure::choose(|| 0..elements.len(), &light.outcome.radiosity, &light.optics.emission)
+    } else {
+        let index = RayIndex::new(elements);
+        let canvas = Canvas::trace(View::of_scene(&scene.cameras, elements, &index), &index);
+        let exposure =
+            Exposure::choose(|| canvas.elements(), &light.outcome.radiosity, &light.optics.emission);
+        lines.extend(draw_all(job, &folder, light, &canvas, exposure, monitor)?);
+        exposure
+    };
+    lines.extend(write_tables(job, &folder, light, exposure)?.iter().map(|path| path.display().to_string()));
+    Ok(lines)
+}
+
+/// Draw the pictures that are wanted; returns the paths written, for a person.
+fn draw_all(
+    job: &Job,
+    folder: &Path,
+    light: &Light,
+    canvas: &Canvas,
+    exposure: Exposure,
+    monitor: &Monitor,
+) -> Result<Vec<String>> {
     let draw = |name: &str, radiosity: &[Rgb]| {
         let path = folder.join(name);
-        write_png(&path, &shade(&canvas, radiosity, exposure)).map(|()| path)
+        write_png(&path, &shade(canvas, radiosity, exposure)).map(|()| path)
     };
-
-    let rounds = &light.outcome.rounds;
+    let rounds = if job.pictures == Pictures::Rounds { light.outcome.rounds.as_slice() } else { &[] };
     let shown: Vec<(usize, &[Rgb])> =
         rounds.iter().filter_map(|round| Some((round.number, round.radiosity.as_deref()?))).collect();
     monitor.begin("pictures", shown.len());
@@ -84,10 +104,11 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     if let Some(classic) = light.classic {
         written.push(draw("classic.png", &classic.radiosity)?);
     }
-    let edges = folder.join("wireframe.png");
-    write_png(&edges, &wireframe(&canvas, elements))?;
-    written.push(edges);
-    written.extend(write_tables(job, &folder, light, exposure)?);
+    if job.pictures == Pictures::Rounds {
+        let edges = folder.join("wireframe.png");
+        write_png(&edges, &wireframe(canvas, &light.placed.world.elements))?;
+        written.push(edges);
+    }
     let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     if let Some((last, _)) = shown.last() {
         let first = folder.join(picture_of(1));

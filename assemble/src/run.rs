@@ -9,6 +9,7 @@ use crate::placed::Placed;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::report::{Report, Run, peak_rss, summary};
+use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
@@ -18,6 +19,17 @@ use equilux_bake::{depfile, stamp};
 use equilux_formats::{Error, Optics, Result, Store, Swept};
 use std::path::PathBuf;
 use std::time::Instant;
+
+/// Which pictures are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pictures {
+    /// Of the first eight rounds, of powers of two, of the end, and of the elements.
+    Rounds,
+    /// Of the end.
+    Last,
+    /// None.
+    None,
+}
 
 /// What to assemble, and how.
 #[derive(Debug, Clone)]
@@ -38,6 +50,10 @@ pub struct Job {
     pub exact_rows: ExactRows,
     /// Whether to solve the classic matrix too.
     pub verify: bool,
+    /// Whether to start from the light of the last such run of the scene, and to keep this one's for the next.
+    pub warm: bool,
+    /// Which rounds get pictures.
+    pub pictures: Pictures,
     /// Where to write the table of elements.
     pub elements: Option<PathBuf>,
     /// Where to write for build tools which files were read.
@@ -68,7 +84,11 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let optics = whole_optics(&placed);
     let nodes = nodes(&placed, &coupled, &each);
     refuse_endless_light(&placed, &nodes, &optics, &job.scene)?;
-    let outcome = exchange(&nodes, job.method, job.goal, None, monitor);
+    let start_light = if job.warm { last_light(&placed, &store, &job.scene) } else { None };
+    let outcome = exchange(&nodes, job.method, job.goal, start_light.as_deref(), monitor);
+    if job.warm {
+        keep(&placed, &store, &job.scene, &outcome.radiosity)?;
+    }
     let proof = prove(&placed, &nodes, &outcome, job.exact_rows, monitor);
     let peak = peak_rss();
     let classic = if job.verify { classic(&placed, monitor) } else { None };

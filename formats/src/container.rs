@@ -36,6 +36,8 @@ pub enum Kind {
     Coupling,
     /// Only a manifest: what something was last made from.
     Manifest,
+    /// The light of a scene.
+    Solution,
     /// Only a manifest and a key: what was made from something else, and would be the same.
     Alias,
 }
@@ -51,6 +53,7 @@ impl Kind {
             Self::Light => *b"LGHT",
             Self::Coupling => *b"COUP",
             Self::Manifest => *b"MANI",
+            Self::Solution => *b"SOLN",
             Self::Alias => *b"ALIA",
         }
     }
@@ -62,6 +65,7 @@ impl Kind {
             Self::Light => "light",
             Self::Coupling => "coupling",
             Self::Manifest => "manifest",
+            Self::Solution => "solution",
             Self::Alias => "alias",
         }
     }

@@ -28,7 +28,7 @@ pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
 pub use rows::{Precision, Rgb, RowGroup, Rows};
 pub use scene::{Camera, Instance, LightKind, PunctualLight, Repainted, Scene};
-pub use solution::Solution;
+pub use solution::{Solution, SolvedInstance};
 pub use store::{Lookup, Store, Swept, Tally, Turn};
 pub use stored::Stored;
 pub use whole_file::{check_writable_beside, remove_left_over_beside, write_whole};

@@ -6,6 +6,7 @@
 mod geometry;
 mod light;
 mod rows;
+mod solution;
 
 use crate::container::{Kind, Number, Reader, Writer};
 use crate::error::Result;

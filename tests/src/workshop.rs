@@ -6,7 +6,7 @@ use assert_cmd::Command;
 use equilux_assemble::exchange::{Goal, Method};
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::{Job, run};
+use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
@@ -79,6 +79,8 @@ impl Workshop {
             goal: Goal { error: 0.0, rounds: usize::MAX },
             exact_rows: ExactRows::About(256),
             verify: false,
+            warm: false,
+            pictures: Pictures::Rounds,
             elements: None,
             depfile: None,
             cache_limit: None,

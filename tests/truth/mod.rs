@@ -4,7 +4,7 @@
 
 use equilux_assemble::exchange::{Goal, Method};
 use equilux_assemble::proof::sample::ExactRows;
-use equilux_assemble::run::{Job, run};
+use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
@@ -72,6 +72,8 @@ fn assembled(scene: &Path) -> Table {
         goal: Goal { error: 1e-6, rounds: usize::MAX },
         exact_rows: ExactRows::About(0),
         verify: false,
+        warm: false,
+        pictures: Pictures::Rounds,
         elements: Some(elements.clone()),
         depfile: None,
         cache_limit: None,

@@ -26,6 +26,8 @@ pub struct Report {
     pub element_size: String,
     /// What became of the blocks.
     pub blocks: Blocks,
+    /// Form factors of all blocks together.
+    pub form_factors_stored: usize,
     /// Form factors computed in this run; none if everything came from the cache.
     pub form_factors_computed: usize,
     /// Where time went.

@@ -56,6 +56,7 @@ pub fn summary(run: &Run) -> Report {
         instances: placed.instances.len(),
         element_size: String::new(),
         blocks: blocks(run),
+        form_factors_stored: nodes.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
         form_factors_computed: form_factors_computed(placed, coupled),
         seconds: seconds(placed, coupled, &outcome.times),
         rounds: rounds(run, &error),

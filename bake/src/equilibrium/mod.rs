@@ -15,9 +15,9 @@ use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 
-/// Up to this many elements the direct solver is chosen when nobody chooses: its n³/3 then costs less than a second,
-/// once, and every later solve n².
-const DIRECT_UP_TO: usize = 2000;
+/// Up to this many elements the direct solver is chosen when nobody chooses. Its factors take n² numbers to keep and to
+/// read, n³/3 to make; a handful of gathers over a compressed block is cheaper from a few hundred elements on.
+const DIRECT_UP_TO: usize = 256;
 
 /// A residual this small, relative to the largest radiosity, is rounding: a sum of a few thousand terms in f64.
 const ROUNDING: f64 = 1e-14;

@@ -1,0 +1,88 @@
+//! What an edit of a level costs against starting from nothing: move a crate, switch a lamp, repaint a wall.
+//! `cargo bench -p equilux-tests --bench edits -- [ROOMS] [ELEMENT SIZE] [TOLERANCE]`
+
+use equilux_assemble::proof::sample::ExactRows;
+use equilux_assemble::report::Report;
+use equilux_assemble::run::{Job, Pictures, run};
+use equilux_bake::elements::ElementSize;
+use equilux_bake::monitor::Monitor;
+use equilux_bake::prepare::Division;
+use equilux_bake::treecode::Resolution;
+use equilux_tests::levels::furnished;
+use equilux_tests::model::{Model, Node};
+use equilux_tests::shapes::{grey, solid};
+use equilux_tests::workshop::Workshop;
+use glam::{DVec3, dvec3};
+use std::time::Instant;
+
+fn main() {
+    let numbers: Vec<f64> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
+    let number = |k: usize, default: f64| numbers.get(k).copied().unwrap_or(default);
+    let (rooms, size, tolerance) = (number(0, 32.0) as usize, number(1, 0.3), number(2, 0.01));
+    let workshop = Workshop::new();
+    let mut job = workshop.job(Division::Authored);
+    job.preparation.element_size = Some(ElementSize::Metres(size));
+    job.preparation.resolution = Resolution::for_tolerance(tolerance);
+    job.goal.error = 1e-6;
+    job.exact_rows = ExactRows::About(0);
+    job.pictures = Pictures::None;
+    job.warm = true;
+    println!(
+        "{:<34}{:>10}{:>12}{:>10}{:>8}{:>9}{:>9}",
+        "", "elements", "computed", "of all", "rounds", "seconds", "faster"
+    );
+    let mut level = level(rooms);
+    let said = |what: &str, level: &[Node], job: &Job, first: Option<f64>| {
+        Model::of(level).write(&workshop.path("scene.glb"));
+        let start = Instant::now();
+        let report: Report = run(job, &Monitor::default()).unwrap_or_else(|error| panic!("{error}"));
+        let seconds = start.elapsed().as_secs_f64();
+        let stored: usize = report.parts.iter().map(|part| part.stored).sum::<usize>();
+        println!(
+            "{what:<34}{:>10}{:>12}{:>10}{:>8}{seconds:>9.2}{:>9}",
+            report.elements,
+            report.form_factors_computed,
+            format!(
+                "{:.2} %",
+                100.0 * report.form_factors_computed as f64 / report.form_factors_stored.max(stored) as f64
+            ),
+            report.rounds.len(),
+            first.map_or(String::new(), |first| format!("{:.1} ×", first / seconds)),
+        );
+        if std::env::var_os("EQUILUX_TEXT").is_some() {
+            println!("{}", report.text());
+        }
+        seconds
+    };
+    let first = said("from nothing", &level, &job, None);
+    said("again, nothing changed", &level, &job, Some(first));
+    level[rooms + 3].at += dvec3(0.25, 0.0, 0.125);
+    said("a crate moved", &level, &job, Some(first));
+    let lamp = |node: &mut Node, by: f64| {
+        let part = node.part.as_mut().expect("a part");
+        let shining = part.materials.iter_mut().filter(|material| material.emission != [0.0; 3]);
+        shining.for_each(|material| material.emission = material.emission.map(|e| e * by));
+    };
+    lamp(&mut level[5], 0.0);
+    said("a lamp switched off", &level, &job, Some(first));
+    level[2].part.as_mut().expect("a part").materials[0].reflectance = [0.8, 0.3, 0.2];
+    said("a wall repainted", &level, &job, Some(first));
+    let elsewhere = Workshop::new();
+    said("the same from nothing", &level, &Job { cache: elsewhere.path("cache"), ..job.clone() }, None);
+}
+
+/// Furnished rooms, and a crate of its own in each.
+fn level(rooms: usize) -> Vec<Node> {
+    let rooms = furnished(rooms);
+    let crates: Vec<Node> = (0..rooms.len())
+        .map(|k| {
+            let floor =
+                rooms[k].surfaces[0].corners.as_slice().iter().fold(DVec3::INFINITY, |low, &p| low.min(p));
+            let at = floor + dvec3(2.2, 0.3, 0.4 + 0.05 * (k % 8) as f64);
+            let solid = solid(grey(0.6, 0.0), DVec3::splat(-0.25), dvec3(0.25, 0.25, 0.25));
+            Node { at, ..Node::new(&format!("crate {k}"), solid) }
+        })
+        .collect();
+    let named = rooms.into_iter().map(|part| Node::new(&part.name.clone(), part));
+    named.chain(crates).collect()
+}
