@@ -107,6 +107,11 @@ impl<'a> Frontier<'a> {
         Self { candidates, senders: roots.map(|root| (root as u32, all.clone())).collect() }
     }
 
+    /// Whether there is nothing to be searched.
+    pub fn is_empty(&self) -> bool {
+        self.senders.is_empty()
+    }
+
     /// The senders and their lists.
     pub fn senders(&self) -> impl Iterator<Item = (u32, &[Entry])> {
         self.senders.iter().map(|(node, list)| (*node, self.candidates.slice(list.clone())))
@@ -140,14 +145,16 @@ impl<'a> Frontier<'a> {
     }
 }
 
-/// Whether nothing that changed can matter to a sender of which no part above it can have had an entry: only flat ones
-/// have. What lies inside a flat sender is looked at entry by entry, later.
+/// Whether nothing that changed can matter to a sender around which nothing can have had an entry: only flat ones have. What
+/// lies inside a flat sender is looked at entry by entry, later.
 fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
-    let Some(revision) = &request.revision else { return false };
-    let sender = &request.world.nodes[node as usize];
-    sender.polygon.is_empty()
-        && !revision.change.anew[request.world.instance_of_node(node as usize)]
-        && !revision.change.touches(request.world, viewers, sender)
+    let (world, Some(revision)) = (request.world, &request.revision) else { return false };
+    let sender = &world.nodes[node as usize];
+    let is_outermost =
+        |node| world.parent_of(node).is_none_or(|p| world.nodes[p as usize].polygon.is_empty());
+    (sender.polygon.is_empty() || is_outermost(node))
+        && !revision.change.anew[world.instance_of_node(node as usize)]
+        && !revision.change.touches(world, viewers, sender)
 }
 
 fn stays_closed(sender: &Node, viewers: &Viewers) -> bool {

@@ -9,7 +9,7 @@ use super::Request;
 use super::viewers::Viewers;
 use crate::shaft::Shaft;
 use crate::world::{Node, World};
-use equilux_formats::{Geometry, Rows};
+use equilux_formats::{Geometry, RowGroup, Rows};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
@@ -70,6 +70,24 @@ impl Change {
                 && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
         };
         self.things.iter().any(touches)
+    }
+}
+
+impl Revision<'_> {
+    /// The rows of some receivers that see nothing that changed; none if a sender of theirs is gone.
+    pub fn untouched(&self, request: &Request, elements: &Range<usize>) -> Option<RowGroup> {
+        let group = self.old.group_of(elements.start - request.world.elements_of(request.receivers).start);
+        let (columns, values) = self.old.values_of(group);
+        let sender = |&column: &u32| self.senders[column as usize];
+        let senders = columns.iter().map(sender).collect::<Option<Vec<u32>>>()?;
+        // Columns rise, and senders that stay are in order, but for instances that changed places.
+        if !senders.is_sorted() {
+            return None;
+        }
+        let columns = senders.iter().map(|node| node - request.columns.start as u32).collect();
+        let receivers = self.old.receivers_of(group);
+        let steps = Some(receivers.clone().map(|i| self.old.step_of(i)).collect());
+        Some(RowGroup { columns, values, receivers: receivers.len(), steps })
     }
 }
 

@@ -93,6 +93,18 @@ impl<'a> Search<'a> {
         };
         let receivers = Receivers::new(request.world, elements.clone());
         let revised = request.revision.as_ref();
+        if let Some(group) =
+            revised.filter(|_| frontier.is_empty()).and_then(|r| r.untouched(request, &elements))
+        {
+            let width = group.columns.len();
+            let sum = |i: usize| group.values[i * width..(i + 1) * width].iter().sum();
+            return Found {
+                sums: (0..group.receivers).map(sum).collect(),
+                group,
+                computed: 0,
+                is_changed: false,
+            };
+        }
         let revised = revised.map(|revision| Revised::new(request, revision, &receivers.viewers, &elements));
         let missing = match &revised {
             Some(revised) => {
