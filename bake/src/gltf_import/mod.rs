@@ -81,12 +81,15 @@ struct Made {
     paints: Rc<[Paint]>,
 }
 
+/// How a node looks, as recipes compare it.
+type LookBits = (u64, Vec<usize>);
+
 /// What a part is made from; equal recipes make equal parts. Floats as bits.
 #[derive(PartialEq, Eq, Hash)]
 struct Recipe {
     file: Option<PathBuf>,
     /// Mesh, placement and look of each node.
-    nodes: Vec<(usize, [u64; 12], (u64, Vec<usize>))>,
+    nodes: Vec<(usize, [u64; 12], LookBits)>,
     settings: (Option<u64>, Option<LocalSolver>),
     linear: [u64; 9],
 }
