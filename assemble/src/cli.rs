@@ -5,11 +5,14 @@ use crate::plan::{Plan, plan};
 use crate::proof::sample::ExactRows;
 use crate::report::Report;
 use crate::run::{Job, Pictures, run};
+use crate::watch::watch;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use equilux_bake::cli::{options::SceneOptions, progress};
+use equilux_bake::monitor::Monitor;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 /// Assemble a scene from baked parts, let them exchange light until equilibrium, and write pictures and a report.
 #[derive(Parser)]
@@ -20,6 +23,12 @@ struct Arguments {
     command: Option<Task>,
     #[command(flatten)]
     assembly: Assembly,
+    /// Say in a sentence for every part and block whether it was computed, reused or left out, and why
+    #[arg(long)]
+    explain: bool,
+    /// Assemble again whenever a file of the scene changes, until Ctrl-C; a line or two a run
+    #[arg(long)]
+    watch: bool,
 }
 
 /// What to do other than assemble.
@@ -103,16 +112,22 @@ Examples:
   assemble scenes/house/house.gltf --element-size 0.3  a level from part files
   assemble scenes/wood/wood.glb --bisect 8 --verify    parts by planes, compared with the whole
   assemble plan scenes/house/house.gltf                what would be computed, and why
+  assemble scenes/house/house.gltf --watch             again whenever one of its files is saved
 Ctrl-C ends the exchange after the current round; everything is still written.";
 
 /// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
 pub fn main() -> ExitCode {
-    let Arguments { command, assembly } = Arguments::parse();
+    let Arguments { command, assembly, explain, watch } = Arguments::parse();
     let outcome = match command {
+        None if watch => watched(&assembly, explain).map(|()| String::new()),
         Some(Task::Plan(assembly)) => {
             plan(&assembly.job()).map_err(Into::into).map(|plan| said(&assembly, &plan, Plan::text))
         }
-        None => assemble(&assembly).map(|report| said(&assembly, &report, Report::text)),
+        None => {
+            let monitor = progress::monitor_for_program();
+            let report = assembly.options.set_threads().and_then(|()| assemble(&assembly, explain, &monitor));
+            report.map(|report| said(&assembly, &report, Report::text))
+        }
     };
     match outcome {
         Ok(text) => {
@@ -126,13 +141,42 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn assemble(assembly: &Assembly) -> anyhow::Result<Report> {
-    assembly.options.set_threads()?;
-    let monitor = progress::monitor_for_program();
-    let progress = progress::show(&monitor);
-    let report = run(&assembly.job(), &monitor);
+fn assemble(assembly: &Assembly, explain: bool, monitor: &Arc<Monitor>) -> anyhow::Result<Report> {
+    let progress = progress::show(monitor);
+    let report = run(&Job { explain, ..assembly.job() }, monitor);
     progress.finish();
     Ok(report?)
+}
+
+/// Assemble again and again. Errors in the scene are printed, and it goes on.
+fn watched(assembly: &Assembly, explain: bool) -> anyhow::Result<()> {
+    assembly.options.set_threads()?;
+    let monitor = progress::monitor_for_program();
+    let mut last_notes = Vec::new();
+    watch(&assembly.job().scene, &monitor, |why| match assemble(assembly, explain, &monitor) {
+        Ok(report) => {
+            print!("{}", said(assembly, &report, |report| short(why, report, &last_notes)));
+            last_notes = report.notes;
+        }
+        Err(error) => eprintln!("error: {error:#}"),
+    })?;
+    Ok(())
+}
+
+/// The report in a line, with what is asked for or new.
+fn short(why: &str, report: &Report, last_notes: &[String]) -> String {
+    let baked = report.blocks.self_baked;
+    let mut text = format!(
+        "{why}: {baked} part{} baked, {} form factors computed, {} rounds, {:.2} s\n",
+        if baked == 1 { "" } else { "s" },
+        report.form_factors_computed,
+        report.rounds.len(),
+        report.seconds.total
+    );
+    let notes = report.notes.iter().filter(|note| !last_notes.contains(note));
+    let lines = report.explained.iter().cloned().chain(notes.map(|note| format!("note: {note}")));
+    lines.for_each(|line| text += &(line + "\n"));
+    text
 }
 
 /// What goes to stdout: for machines if they asked, else for people.
@@ -163,6 +207,7 @@ impl Assembly {
                 rounds: self.rounds.unwrap_or(usize::MAX),
             },
             exact_rows: self.exact_rows,
+            explain: false,
             verify: self.verify,
             warm: self.warm,
             pictures: match self.pictures {

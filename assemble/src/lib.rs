@@ -12,6 +12,7 @@ pub mod cli;
 pub mod coupling;
 pub mod elements_csv;
 pub mod exchange;
+mod explain;
 pub mod exposure;
 pub mod gltf_export;
 pub mod hull;
@@ -27,3 +28,5 @@ pub mod run;
 pub mod scene_light;
 mod steps;
 mod warm;
+#[cfg(feature = "cli")]
+pub mod watch;

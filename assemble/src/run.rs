@@ -4,6 +4,7 @@ use crate::account::refuse_endless_light;
 use crate::classic::{classic, whole_optics};
 use crate::coupling::{Coupled, Coupler};
 use crate::exchange::{Goal, Method, exchange, nodes};
+use crate::explain::explained;
 use crate::outputs::{Light, RESULT, check_writable, write_all};
 use crate::placed::Placed;
 use crate::proof::prove;
@@ -48,6 +49,8 @@ pub struct Job {
     pub goal: Goal,
     /// How many receivers get exact rows to measure with what clusters cost.
     pub exact_rows: ExactRows,
+    /// Whether to say of each part and block what became of it.
+    pub explain: bool,
     /// Whether to solve the classic matrix too.
     pub verify: bool,
     /// Whether to start from the light of the last such run of the scene, and to keep this one's for the next.
@@ -110,6 +113,9 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&run) };
     report.bytes.peak_rss = peak;
+    if job.explain {
+        report.explained = explained(&placed, &coupled);
+    }
     report.seconds.total = start.elapsed().as_secs_f64();
     report.notes = [scene.notes, damage_notes(&store), report.notes].concat();
     if let Some(Swept { dropped, .. }) = swept.filter(|swept| swept.dropped.files > 0) {

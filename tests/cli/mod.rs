@@ -7,3 +7,5 @@ mod json;
 mod outputs;
 mod plan;
 mod usage;
+#[cfg(unix)]
+mod watch;

@@ -78,6 +78,7 @@ impl Workshop {
             method: Method::Auto,
             goal: Goal { error: 0.0, rounds: usize::MAX },
             exact_rows: ExactRows::About(256),
+            explain: false,
             verify: false,
             warm: false,
             pictures: Pictures::Rounds,

@@ -71,6 +71,7 @@ fn assembled(scene: &Path) -> Table {
         method: Method::Auto,
         goal: Goal { error: 1e-6, rounds: usize::MAX },
         exact_rows: ExactRows::About(0),
+        explain: false,
         verify: false,
         warm: false,
         pictures: Pictures::Rounds,

@@ -2,7 +2,7 @@
 //! has, the run's own code finds there; what it has not is not made. In goes a [`Job`]; out comes a [`Plan`].
 
 mod exchange;
-mod text;
+pub mod text;
 mod unseen;
 
 use crate::coupling::{Coupler, Foreseen};
@@ -50,7 +50,7 @@ pub struct Plan {
     pub notes: Vec<String>,
 }
 
-/// One distinct part.
+/// One distinct part, before a run or after it.
 #[derive(Debug, Clone, Serialize)]
 pub struct PlannedPart {
     /// Its name.
@@ -61,11 +61,14 @@ pub struct PlannedPart {
     pub places: usize,
     /// What becomes of its own form factors.
     pub form_factors: Step,
+    /// What became of its own light; none before the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<Step>,
     /// Who solves its equilibrium.
     pub local_solver: String,
 }
 
-/// A part in its place.
+/// A part in its place, before a run or after it.
 #[derive(Debug, Clone, Serialize)]
 pub struct PlannedInstance {
     /// Its name.
@@ -134,6 +137,7 @@ fn planned_parts(
         elements: part.geometry.elements.len(),
         places: prepared.instances.iter().filter(|instance| instance.part.index() == number).count(),
         form_factors: Step::of(&baked.as_ref().map_or_else(|| foresee(part), |b| b.form_factors.clone())),
+        light: None,
         local_solver: format!("{:?}", part.solver),
     };
     prepared.parts.iter().zip(baked).enumerate().map(planned).collect()
@@ -185,7 +189,8 @@ fn left_out(prepared: &Prepared, unseen: usize) -> BTreeMap<String, usize> {
 }
 
 impl Step {
-    fn of(origin: &Origin) -> Self {
+    /// What the origin says.
+    pub fn of(origin: &Origin) -> Self {
         match origin {
             Origin::Reused => Self { how: "reused", reason: "all inputs are unchanged".into() },
             Origin::Unchanged(_) => Self { how: "reused", reason: origin.to_string() },

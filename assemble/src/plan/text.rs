@@ -46,10 +46,12 @@ impl Plan {
     }
 }
 
-fn part_line(part: &PlannedPart) -> String {
+/// What becomes of a part, in a line.
+pub fn part_line(part: &PlannedPart) -> String {
     let places = if part.places == 1 { "1 place".into() } else { format!("{} places", part.places) };
+    let light = part.light.as_ref().map_or(String::new(), |light| format!("; light {}", step(light)));
     format!(
-        "part {}: {} elements in {places}, solved by {}; form factors {}",
+        "part {}: {} elements in {places}, solved by {}; form factors {}{light}",
         part.name,
         part.elements,
         part.local_solver,
@@ -57,12 +59,14 @@ fn part_line(part: &PlannedPart) -> String {
     )
 }
 
-fn corrected_line(instance: &PlannedInstance) -> Option<String> {
+/// What becomes of an instance's own form factors, if something stands inside it.
+pub fn corrected_line(instance: &PlannedInstance) -> Option<String> {
     let corrected = instance.corrected.as_ref()?;
     let inside = instance.intruders.join(", ");
     Some(format!("inside {} is {inside}: its own form factors {}", instance.name, step(corrected)))
 }
 
-fn step(step: &Step) -> String {
+/// What is done, and why.
+pub fn step(step: &Step) -> String {
     format!("{}: {}", step.how, step.reason)
 }

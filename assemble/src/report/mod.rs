@@ -53,6 +53,9 @@ pub struct Report {
     pub row_sum_defect: Defect,
     /// The comparison with the classic matrix, if asked for.
     pub verify: Option<Verify>,
+    /// What became of each part and block and why, one sentence each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub explained: Vec<String>,
     /// What was ignored, dropped or corrected, one sentence each.
     pub notes: Vec<String>,
     /// Where pictures and files were written.

@@ -69,6 +69,7 @@ pub fn summary(run: &Run) -> Report {
         column_sums: outcome.column_sums,
         row_sum_defect: row_sum_defect(nodes),
         verify: run.classic.map(|classic| verification(placed, classic, outcome)),
+        explained: vec![],
         notes: notes(placed, coupled, nodes),
         outputs: vec![],
     }
@@ -179,7 +180,7 @@ fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
 }
 
 /// Which instances a block's receivers see anything of.
-fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
+pub fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
     let mut seen = vec![false; placed.instances.len()];
     let of: Vec<usize> =
         (0..seen.len()).flat_map(|l| std::iter::repeat_n(l, placed.world.nodes_of(l).len())).collect();

@@ -18,6 +18,7 @@ impl Report {
             self.blocks_line(),
         ];
         lines.extend(left_out_line(&self.blocks.coupling_left_out));
+        lines.extend(self.explained.iter().cloned());
         lines.extend(self.step_lines());
         lines.extend(self.round_lines());
         lines.extend(self.error.lines(self.elements));

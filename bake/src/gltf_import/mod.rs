@@ -39,7 +39,7 @@ use meshes::Meshes;
 use nodes::{Placed, part_roots, subtree};
 use part_files::{PartFiles, no_surfaces};
 use parts::{Catalogue, Settled, settle, split};
-use repaint::Look;
+use repaint::{Look, LookRecipe};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -81,15 +81,12 @@ struct Made {
     paints: Rc<[Paint]>,
 }
 
-/// How a node looks, as recipes compare it.
-type LookBits = (u64, Vec<usize>);
-
 /// What a part is made from; equal recipes make equal parts. Floats as bits.
 #[derive(PartialEq, Eq, Hash)]
 struct Recipe {
     file: Option<PathBuf>,
     /// Mesh, placement and look of each node.
-    nodes: Vec<(usize, [u64; 12], LookBits)>,
+    nodes: Vec<(usize, [u64; 12], LookRecipe)>,
     settings: (Option<u64>, Option<LocalSolver>),
     linear: [u64; 9],
 }

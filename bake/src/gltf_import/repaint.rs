@@ -89,11 +89,20 @@ impl Look {
         changes.fold(paint.clone(), |paint, change| change.on(paint))
     }
 
-    /// What tells this look from others in one file: the emission scale's bits, and the nodes that repaint.
-    pub(super) fn recipe(&self) -> (u64, Vec<usize>) {
-        let nodes = self.repaints.iter().map(|repaint| repaint.node);
-        (self.emission_scale.to_bits(), nodes.collect())
+    /// What tells this look from others in one file.
+    pub(super) fn recipe(&self) -> LookRecipe {
+        let repaints = self.repaints.iter().map(|repaint| repaint.node).collect();
+        LookRecipe { emission_scale: self.emission_scale.to_bits(), repaints }
     }
+}
+
+/// Equal recipes in one file make equal looks.
+#[derive(PartialEq, Eq, Hash)]
+pub(super) struct LookRecipe {
+    /// As bits.
+    emission_scale: u64,
+    /// The nodes that repaint.
+    repaints: Vec<usize>,
 }
 
 /// Which materials nodes ask to repaint, and whether there were any. By number and name of the node.
