@@ -40,6 +40,7 @@ pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Secon
         t1: total(&own) + total(&coupling) + total(&solve) + total(&transfer),
         t2: longest(&own) + total(&coupling) + longest(&solve) + total(&transfer),
         t3: longest(&own).max(longest(&coupling)) + longest(&solve) + longest(&transfer),
+        exchange_overhead: times.overhead.total().as_secs_f64(),
         total: 0.0,
     }
 }

@@ -230,15 +230,18 @@ impl Rows {
     ) -> Vec<(usize, [f64; N])> {
         let columns = self.columns_of(group);
         let first = self.groups[group].value;
-        let of = |(k, &column): (usize, &u32)| {
-            let mut sum = [0.0; N];
-            for (row, (receiver, weight)) in self.receivers_of(group).zip(weights).enumerate() {
-                let value = self.value(first + row * columns.len() + k, receiver);
-                sum.iter_mut().zip(weight).for_each(|(sum, weight)| *sum += value * weight);
+        let mut sums = vec![[0.0; N]; columns.len()];
+        for (row, (receiver, weight)) in self.receivers_of(group).zip(weights).enumerate() {
+            let range = first + row * columns.len()..first + (row + 1) * columns.len();
+            match &self.values {
+                Values::Full(values) => spread(values[range].iter().copied(), weight, &mut sums),
+                Values::Steps { steps, unit } => {
+                    let unit = unit[receiver];
+                    spread(steps[range].iter().map(|&s| f64::from(s) * unit), weight, &mut sums);
+                }
             }
-            (column as usize, sum)
-        };
-        columns.iter().enumerate().map(of).collect()
+        }
+        columns.iter().map(|&column| column as usize).zip(sums).collect()
     }
 
     fn columns_of(&self, group: usize) -> &[u32] {
@@ -309,6 +312,13 @@ fn dot(row: impl Iterator<Item = f64>, seen: &[Rgb]) -> Rgb {
         }
     }
     sum
+}
+
+/// Add a row's values times its weights to the sums of its columns.
+fn spread<const N: usize>(row: impl Iterator<Item = f64>, weight: &[f64; N], sums: &mut [[f64; N]]) {
+    for (value, sums) in row.zip(sums) {
+        sums.iter_mut().zip(weight).for_each(|(sum, weight)| *sum += value * weight);
+    }
 }
 
 /// A step of an earlier row does if it is at most this much coarser than needed.

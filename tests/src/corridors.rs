@@ -23,6 +23,16 @@ pub fn corridor(rooms: usize, open: f64, size: f64, resolution: Resolution) -> A
     Assembled::new(geometries, optics, resolution, None)
 }
 
+/// Furnished rooms with lamps and doors, one part each.
+pub fn level(rooms: usize, size: f64, resolution: Resolution) -> Assembled {
+    let parts = furnished(rooms);
+    let geometries: Vec<Geometry> =
+        parts.iter().map(|part| subdivide(part, ElementSize::Metres(size))).collect();
+    let optics = parts.iter().zip(&geometries).map(|(part, geometry)| optics(geometry, &part.materials));
+    let optics = optics.collect();
+    Assembled::new(geometries, optics, resolution, None)
+}
+
 /// Furnished rooms with lamps, cut by planes into cells.
 pub fn cells(rooms: usize, count: usize, size: f64, resolution: Resolution) -> Assembled {
     let whole = joined(furnished(rooms));

@@ -19,7 +19,7 @@ const MOST: usize = 1024;
 const ANSWERS: usize = 7;
 
 /// Exchanges that block Jacobi would end in this many rounds do without.
-const FEW: f64 = 8.0;
+const FEW: f64 = 16.0;
 
 /// The coarse equation of a group, factored.
 pub struct Coarse<'a> {
@@ -51,18 +51,23 @@ impl<'a> Coarse<'a> {
             return None;
         }
         let coupling = coupling(group, &unknowns);
-        let entry = |channel: usize, row: usize, column: usize| {
+        let row = |row: usize| -> Vec<Rgb> {
             let member = unknowns.partition_point(|range| range.end <= row);
             let (answers, own) = (&group.node(member).answers, &unknowns[member]);
             let (count, first) = (answers.radiosity.len(), row - own.start);
-            if answers.matrix[first * (count + 1)][channel] == 0.0 {
+            let mut entries: Vec<Rgb> =
+                coupling[member][first * size..][..size].iter().map(|entry| entry.map(|f| -f)).collect();
+            let inside = &answers.matrix[first * count..][..own.len()];
+            entries[own.clone()].iter_mut().zip(inside).for_each(|(entry, &own)| *entry = added(*entry, own));
+            for channel in (0..3).filter(|&c| inside[first][c] == 0.0) {
                 // An answer that this channel does not have.
-                return f64::from(u8::from(row == column));
+                entries.iter_mut().for_each(|entry| entry[channel] = 0.0);
+                entries[row][channel] = 1.0;
             }
-            let inside = own.contains(&column).then(|| answers.matrix[first * count + column - own.start]);
-            inside.map_or(0.0, |inside| inside[channel]) - coupling[member][first * size + column][channel]
+            entries
         };
-        Some(Self { group, factors: factorise_dense(size, entry), unknowns })
+        let entries: Vec<Rgb> = (0..size).flat_map(row).collect();
+        Some(Self { group, factors: factorise_dense(size, &entries), unknowns })
     }
 
     /// Number of unknowns.
@@ -108,17 +113,25 @@ impl<'a> Coarse<'a> {
 
 /// Σ_i A_i a_i ρ_i Σ_j F_ij b_j for the answers a of one member and b of all others, by rows; one matrix a member.
 fn coupling(group: &Group, unknowns: &[Range<usize>]) -> Vec<Vec<Rgb>> {
-    let sent = |m: usize| -> Vec<Vec<Rgb>> {
+    let sent = |m: usize| -> Vec<[Rgb; ANSWERS]> {
         let node = group.node(m);
-        let answers = node.answers.radiosity[..unknowns[m].len()].iter();
-        answers.map(|answer| node.clusters.means(answer)).collect()
+        let mut sent = vec![[[0.0; 3]; ANSWERS]; node.clusters.nodes()];
+        for (k, answer) in node.answers.radiosity[..unknowns[m].len()].iter().enumerate() {
+            sent.iter_mut().zip(node.clusters.means(answer)).for_each(|(sent, mean)| sent[k] = mean);
+        }
+        sent
     };
-    let sent: Vec<Vec<Vec<Rgb>>> = (0..unknowns.len()).into_par_iter().map(sent).collect();
+    let sent: Vec<Vec<[Rgb; ANSWERS]>> = (0..unknowns.len()).into_par_iter().map(sent).collect();
     (0..unknowns.len()).into_par_iter().map(|m| received_by(group, m, unknowns, &sent)).collect()
 }
 
 /// The matrix of one member from what all answers send.
-fn received_by(group: &Group, member: usize, unknowns: &[Range<usize>], sent: &[Vec<Vec<Rgb>>]) -> Vec<Rgb> {
+fn received_by(
+    group: &Group,
+    member: usize,
+    unknowns: &[Range<usize>],
+    sent: &[Vec<[Rgb; ANSWERS]>],
+) -> Vec<Rgb> {
     let node = group.node(member);
     let answers = &node.answers.radiosity[..unknowns[member].len()];
     let size = unknowns.last().map_or(0, |last| last.end);
@@ -129,21 +142,40 @@ fn received_by(group: &Group, member: usize, unknowns: &[Range<usize>], sent: &[
         if weights.iter().flatten().all(|&weight| weight == 0.0) {
             continue;
         }
+        let scattered = node.coupling.scatter_group(rows, &weights);
         // Senders come in order, so those of a member together.
-        let mut from = 0;
-        for (sender, sums) in node.coupling.scatter_group(rows, &weights) {
-            while group.senders_of(from).end <= sender {
+        let (mut from, mut rest) = (0, scattered.as_slice());
+        while let Some((next, _)) = rest.first() {
+            while group.senders_of(from).end <= *next {
                 from += 1;
             }
-            let place = sender - group.senders_of(from).start;
-            for (sum, row) in sums.as_chunks::<3>().0.iter().zip(matrix.chunks_mut(size)) {
-                for (entry, sent) in row[unknowns[from].clone()].iter_mut().zip(&sent[from]) {
-                    *entry = added(*entry, scaled(*sum, sent[place]));
-                }
+            let of_member = rest.partition_point(|(sender, _)| *sender < group.senders_of(from).end);
+            let (of_member, others) = rest.split_at(of_member);
+            rest = others;
+            let products = products(of_member, &sent[from], group.senders_of(from).start);
+            for (row, products) in matrix.chunks_mut(size).zip(products) {
+                let entries = row[unknowns[from].clone()].iter_mut();
+                entries.zip(products).for_each(|(entry, product)| *entry = added(*entry, product));
             }
         }
     }
     matrix
+}
+
+/// Σ_j s_j b_j over senders j of one member, whose first is `first`, for each sum s of receivers and each answer b.
+fn products(
+    scattered: &[(usize, [f64; 3 * ANSWERS])],
+    sent: &[[Rgb; ANSWERS]],
+    first: usize,
+) -> [[Rgb; ANSWERS]; ANSWERS] {
+    let mut products = [[[0.0; 3]; ANSWERS]; ANSWERS];
+    for (sender, sums) in scattered {
+        for (row, &sum) in products.iter_mut().zip(sums.as_chunks::<3>().0) {
+            let entries = row.iter_mut().zip(&sent[sender - first]);
+            entries.for_each(|(entry, &sent)| *entry = added(*entry, scaled(sum, sent)));
+        }
+    }
+    products
 }
 
 /// A_i a_i ρ_i of one element for each answer a.

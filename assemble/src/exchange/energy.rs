@@ -6,6 +6,7 @@
 use super::groups::Group;
 use equilux_bake::equilibrium::added;
 use equilux_formats::Rgb;
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// Power, W, channel by channel.
@@ -30,11 +31,13 @@ impl Columns {
         let mut arriving = vec![0.0; group.scene_senders()];
         for (m, node) in group.nodes().enumerate() {
             for (block, first) in [(node.self_block, group.senders_of(m).start), (node.coupling, 0)] {
-                for rows in 0..block.groups() {
+                let scattered = |rows: usize| {
                     let areas: Vec<[f64; 1]> = block.receivers_of(rows).map(|i| [node.areas[i]]).collect();
-                    for (sender, [sum]) in block.scatter_group(rows, &areas) {
-                        arriving[first + sender] += sum;
-                    }
+                    block.scatter_group(rows, &areas)
+                };
+                let sums: Vec<_> = (0..block.groups()).into_par_iter().map(scattered).collect();
+                for (sender, [sum]) in sums.into_iter().flatten() {
+                    arriving[first + sender] += sum;
                 }
             }
         }

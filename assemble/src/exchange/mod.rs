@@ -19,7 +19,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
 use groups::groups;
 use rounds::Course;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use whole::Whole;
 
 /// How parts exchange light.
@@ -97,13 +97,47 @@ pub struct StepTimes {
     pub solve: Vec<Duration>,
     /// Transfer into each instance.
     pub transfer: Vec<Duration>,
+    /// Everything else.
+    pub overhead: Overhead,
+}
+
+/// Wall time of what the exchange does beside the paper's steps.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Overhead {
+    /// Finding groups of parts, and the column sums of the energy account; once.
+    pub account: Duration,
+    /// Setting up the coarse space; once.
+    pub coarse: Duration,
+    /// Finding the vector that the bound needs; once.
+    pub margin: Duration,
+    /// Coarse corrections and the Krylov space; all rounds.
+    pub krylov: Duration,
+    /// Bounds and energy accounts; all rounds.
+    pub judging: Duration,
+    /// Residuals computed anew, and the last, sharper bound.
+    pub proving: Duration,
+}
+
+impl Overhead {
+    /// All of it.
+    pub fn total(&self) -> Duration {
+        self.account + self.coarse + self.margin + self.krylov + self.judging + self.proving
+    }
+}
+
+/// Do some work and add the time it takes to `total`.
+fn timed<T>(total: &mut Duration, work: impl FnOnce() -> T) -> T {
+    let start = Instant::now();
+    let done = work();
+    *total += start.elapsed();
+    done
 }
 
 impl StepTimes {
     /// No time in so many instances.
     pub fn none(instances: usize) -> Self {
         let none = vec![Duration::ZERO; instances];
-        Self { solve: none.clone(), transfer: none }
+        Self { solve: none.clone(), transfer: none, overhead: Overhead::default() }
     }
 }
 
@@ -179,12 +213,12 @@ pub fn exchange(
     start: Option<&[Vec<Rgb>]>,
     monitor: &Monitor,
 ) -> Outcome {
-    let groups = groups(nodes);
     let mut times = StepTimes::none(nodes.len());
+    let groups = timed(&mut times.overhead.account, || groups(nodes));
     let mut whole = Whole::new(nodes);
     monitor.begin("exchange", 0);
     for group in &groups {
-        let course = Course::new(group, method, goal);
+        let course = Course::new(group, method, goal, &mut times.overhead);
         let column_sums = course.column_sums();
         let start = start.map(|start| group.members.iter().flat_map(|&k| start[k].clone()).collect());
         let outcome = course.run(start, goal, &mut times, monitor);

@@ -6,7 +6,7 @@ use super::coarse::{Coarse, pays};
 use super::energy::{Columns, Energy};
 use super::groups::Group;
 use super::sweep::Sweep;
-use super::{Goal, Method, StepTimes, is_shown};
+use super::{Goal, Method, Overhead, StepTimes, is_shown, timed};
 use equilux_bake::equilibrium::krylov::Space;
 use equilux_bake::equilibrium::{added, largest, subtract};
 use equilux_bake::monitor::Monitor;
@@ -87,20 +87,21 @@ struct State {
 
 impl<'a> Course<'a> {
     /// Prepare what the method needs for a group.
-    pub fn new(group: &'a Group<'a>, method: Method, goal: Goal) -> Self {
+    pub fn new(group: &'a Group<'a>, method: Method, goal: Goal, spent: &mut Overhead) -> Self {
         let count = group.members.len();
         let krylov = matches!(method, Method::Auto | Method::Gmres) && count > 1;
         let wanted =
             method == Method::Gmres || pays(group.nodes().map(|node| node.answers.returned), goal.error);
-        let coarse = if krylov && wanted { Coarse::of(group) } else { None };
+        let coarse = timed(&mut spent.coarse, || if krylov && wanted { Coarse::of(group) } else { None });
         let turns = match method {
             Method::Jacobi => 1,
             Method::GaussSeidel => count,
             Method::Auto | Method::Gmres => TURNS,
         };
-        let margin = Margin::of(group, coarse.as_ref(), TURNS);
+        let margin = timed(&mut spent.margin, || Margin::of(group, coarse.as_ref(), TURNS));
+        let columns = timed(&mut spent.account, || Columns::of(group));
         let sweep = Sweep::new(group, turns, krylov.then_some(ROUGH));
-        Self { group, coarse, margin, columns: Columns::of(group), sweep, krylov }
+        Self { group, coarse, margin, columns, sweep, krylov }
     }
 
     /// Least and largest column sum.
@@ -118,9 +119,9 @@ impl<'a> Course<'a> {
     ) -> GroupOutcome {
         let is_warm = start.is_some();
         let mut state = self.begin(start);
-        let mut judged = self.judge(&state);
+        let mut judged = self.judge(&state, times);
         if is_warm {
-            judged.error_bound = self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
+            judged.error_bound = self.sharp_bound(&state, times);
         }
         let mut converged = is_warm && judged.is_within(goal.error);
         let mut rounds: Vec<GroupRound> = Vec::new();
@@ -128,14 +129,14 @@ impl<'a> Course<'a> {
         while rounds.len() < goal.rounds && !converged && !monitor.stopped() {
             let start = Instant::now();
             self.advance(&mut state, times);
-            judged = self.judge(&state);
+            judged = self.judge(&state, times);
             let settled = judged.is_rounded() || state.is_full();
             let ends = rounds.len() + 1 == goal.rounds || monitor.stopped();
             let mut stalled = false;
             if judged.is_within(goal.error) || settled || ends {
                 // What was tracked from round to round is computed anew before anything is said to be proved.
-                self.refresh(&mut state);
-                judged = self.judge(&state);
+                timed(&mut times.overhead.proving, || self.refresh(&mut state));
+                judged = self.judge(&state, times);
                 stalled = settled && judged.relative_bound() > 0.5 * proved_before;
                 proved_before = judged.relative_bound();
                 // All that rounding allows is what an error of zero asks for.
@@ -149,7 +150,7 @@ impl<'a> Course<'a> {
                 break;
             }
         }
-        judged.error_bound = self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
+        judged.error_bound = self.sharp_bound(&state, times);
         if let Some(last) = rounds.last_mut() {
             last.judged = judged;
         }
@@ -183,11 +184,14 @@ impl<'a> Course<'a> {
             state.missing = state.missing.iter().zip(az).map(|(&r, az)| subtract(r, az)).collect();
             return;
         };
-        let coarse = self.coarse.as_ref().and_then(|coarse| coarse.correct(space.newest()));
-        let (z, az) = self.sweep.correct(space.newest(), coarse, times);
-        space.add(z, az);
-        state.radiosity = sum(base, &space.correction());
-        state.missing = space.residual();
+        let coarse = || self.coarse.as_ref().and_then(|coarse| coarse.correct(space.newest()));
+        let start = timed(&mut times.overhead.krylov, coarse);
+        let (z, az) = self.sweep.correct(space.newest(), start, times);
+        timed(&mut times.overhead.krylov, || {
+            space.add(z, az);
+            state.radiosity = sum(base, &space.correction());
+            state.missing = space.residual();
+        });
     }
 
     /// Compute from the radiosity alone what is missing.
@@ -197,13 +201,18 @@ impl<'a> Course<'a> {
         state.krylov = self.krylov.then(|| (state.radiosity.clone(), Space::new(&state.missing)));
     }
 
-    fn judge(&self, state: &State) -> Judged {
-        Judged {
+    fn judge(&self, state: &State, times: &mut StepTimes) -> Judged {
+        timed(&mut times.overhead.judging, || Judged {
             residual: largest(&state.missing),
             error_bound: self.margin.bound(&state.missing, &state.radiosity),
             brightest: largest(&state.radiosity),
             energy: self.columns.account(self.group, &state.radiosity, &state.missing),
-        }
+        })
+    }
+
+    fn sharp_bound(&self, state: &State, times: &mut StepTimes) -> Rgb {
+        let bound = || self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
+        timed(&mut times.overhead.proving, bound)
     }
 }
 

@@ -122,6 +122,8 @@ pub struct Seconds {
     pub t2: f64,
     /// Everything side by side that can be: the longest chain.
     pub t3: f64,
+    /// The exchange beside steps 5–8: the coarse and the Krylov space, bounds and energy accounts; wall time.
+    pub exchange_overhead: f64,
     /// Wall time of the run.
     pub total: f64,
 }

@@ -9,13 +9,20 @@ use faer::{Mat, MatRef, Par};
 
 /// Factor I − ρF for every distinct channel of ρ.
 pub fn factorise(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb]) -> Factors {
+    distinct(
+        |c, d| reflectance.iter().all(|rho| rho[c] == rho[d]),
+        |channel| lu(block, clusters, reflectance, channel),
+    )
+}
+
+/// The factors of each channel that is no twin of an earlier one.
+fn distinct(are_twins: impl Fn(usize, usize) -> bool, factor: impl Fn(usize) -> Lu) -> Factors {
     let mut channels = Vec::new();
     let mut of_channel = [0u32; 3];
     for c in 0..3 {
-        let twin = (0..c).find(|&d| reflectance.iter().all(|rho| rho[c] == rho[d]));
-        of_channel[c] = twin.map_or_else(
+        of_channel[c] = (0..c).find(|&d| are_twins(c, d)).map_or_else(
             || {
-                channels.push(lu(block, clusters, reflectance, c));
+                channels.push(factor(c));
                 channels.len() as u32 - 1
             },
             |twin| of_channel[twin],
@@ -36,10 +43,13 @@ fn lu(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb], channel: usize)
     factored(matrix)
 }
 
-/// Factor three matrices of the same size, one a channel, `size × size`, given by their entries (channel, row, column).
-pub fn factorise_dense(size: usize, entry: impl Fn(usize, usize, usize) -> f64) -> Factors {
-    let channels = (0..3).map(|c| factored(Mat::from_fn(size, size, |i, j| entry(c, i, j)))).collect();
-    Factors { channels, of_channel: [0, 1, 2] }
+/// Factor three matrices of the same size, one a channel, `size × size`, given by their entries, row by row.
+pub fn factorise_dense(size: usize, entries: &[Rgb]) -> Factors {
+    assert_eq!(entries.len(), size * size, "an entry a row and column");
+    distinct(
+        |c, d| entries.iter().all(|entry| entry[c] == entry[d]),
+        |channel| factored(Mat::from_fn(size, size, |row, column| entries[row * size + column][channel])),
+    )
 }
 
 fn factored(mut matrix: Mat<f64>) -> Lu {

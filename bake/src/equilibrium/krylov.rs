@@ -5,12 +5,23 @@
 
 use super::{added, largest, scaled, subtract};
 use equilux_formats::Rgb;
+use rayon::prelude::*;
 
 /// Directions kept before the residual is taken afresh.
 const RESTART: usize = 40;
 
 /// Restarts after which the answer is returned as it is; the caller's own bound then says how good it is.
 const RESTARTS: usize = 200;
+
+/// Elements that are summed on their own: sums of such pieces, in order, do not depend on the number of threads.
+const PIECE: usize = 2048;
+
+/// A vector of which less than this share is new compared with a basis is made orthogonal to it once more: rounding then
+/// leaves it orthogonal to 1e-13.
+const NEW: f64 = 1e-3;
+
+/// Sums of squares in this range have neither overflowed nor lost anything.
+const SAFE: std::ops::Range<f64> = 1e-280..1e280;
 
 /// Improve `x` until ‖rhs − A x‖∞ ≤ tolerance × ‖x‖∞ in every channel, or until rounding stops all progress.
 /// `precondition` approximates A⁻¹ and may differ from call to call.
@@ -71,11 +82,9 @@ impl Space {
     /// The space that holds only the residual.
     pub fn new(residual: &[Rgb]) -> Self {
         let length = norm(residual);
-        Self {
-            basis: vec![normalised(residual, length)],
-            directions: vec![],
-            least: LeastSquares::new(length),
-        }
+        let mut first = residual.to_vec();
+        normalise(&mut first, length);
+        Self { basis: vec![first], directions: vec![], least: LeastSquares::new(length) }
     }
 
     /// The newest basis vector: what the next direction should answer.
@@ -86,9 +95,9 @@ impl Space {
     /// Take in a direction z, mostly the newest basis vector preconditioned, and A z.
     pub fn add(&mut self, z: Vec<Rgb>, mut az: Vec<Rgb>) {
         self.directions.push(z);
-        let column = orthogonalise(&mut az, &self.basis);
-        let length = norm(&az);
-        self.basis.push(normalised(&az, length));
+        let (column, length) = orthogonalise(&mut az, &self.basis);
+        normalise(&mut az, length);
+        self.basis.push(az);
         self.least.add_column(column, length);
     }
 
@@ -116,23 +125,46 @@ impl Space {
 /// Σ share_k vector_k.
 fn combined(shares: &[Rgb], vectors: &[Vec<Rgb>], length: usize) -> Vec<Rgb> {
     let mut sum = vec![[0.0; 3]; length];
-    for (&share, vector) in shares.iter().zip(vectors) {
-        sum.iter_mut().zip(vector).for_each(|(sum, &v)| *sum = added(*sum, scaled(share, v)));
-    }
+    add_combined(&mut sum, shares, vectors);
     sum
 }
 
-/// Take the components along `basis` out of `w` (modified Gram-Schmidt, twice) and return them.
-fn orthogonalise(w: &mut [Rgb], basis: &[Vec<Rgb>]) -> Vec<Rgb> {
-    let mut column = vec![[0.0; 3]; basis.len()];
+/// sum += Σ share_k vector_k.
+fn add_combined(sum: &mut [Rgb], shares: &[Rgb], vectors: &[Vec<Rgb>]) {
+    sum.par_chunks_mut(PIECE).enumerate().for_each(|(number, piece)| {
+        for (&share, vector) in shares.iter().zip(vectors) {
+            let vector = &vector[number * PIECE..];
+            piece.iter_mut().zip(vector).for_each(|(sum, &v)| *sum = added(*sum, scaled(share, v)));
+        }
+    });
+}
+
+/// Take the components along `basis` out of `w` (Gram-Schmidt; again where little is left, after Daniel, Gragg, Kaufman &
+/// Stewart 1976); returns them and the norm of what is left.
+fn orthogonalise(w: &mut [Rgb], basis: &[Vec<Rgb>]) -> (Vec<Rgb>, Rgb) {
+    let (mut column, mut left) = (vec![[0.0; 3]; basis.len()], [0.0; 3]);
+    // Twice is enough: Giraud, Langou & Rozložník 2005.
     for _ in 0..2 {
-        for (h, v) in column.iter_mut().zip(basis) {
-            let along = dot(w, v);
-            w.iter_mut().zip(v).for_each(|(w, &v)| *w = subtract(*w, scaled(along, v)));
-            *h = added(*h, along);
+        let along = dots(w, basis);
+        let taken: Vec<Rgb> = along.iter().map(|along| along.map(|along| -along)).collect();
+        add_combined(w, &taken, basis);
+        column.iter_mut().zip(&along).for_each(|(sum, &along)| *sum = added(*sum, along));
+        left = norm(w);
+        let taken = norm(&along);
+        if (0..3).all(|c| left[c] >= NEW * taken[c]) {
+            break;
         }
     }
-    column
+    (column, left)
+}
+
+/// The products of a vector with each of several.
+fn dots(w: &[Rgb], vectors: &[Vec<Rgb>]) -> Vec<Rgb> {
+    let of = |(number, piece): (usize, &[Rgb])| -> Vec<Rgb> {
+        vectors.iter().map(|vector| dot(piece, &vector[number * PIECE..])).collect()
+    };
+    let pieces: Vec<Vec<Rgb>> = w.par_chunks(PIECE).enumerate().map(of).collect();
+    (0..vectors.len()).map(|k| pieces.iter().fold([0.0; 3], |sum, piece| added(sum, piece[k]))).collect()
 }
 
 fn dot(a: &[Rgb], b: &[Rgb]) -> Rgb {
@@ -141,6 +173,11 @@ fn dot(a: &[Rgb], b: &[Rgb]) -> Rgb {
 
 /// The Euclidean norm of each channel, safe from overflow: squares of 1e200 would be infinite.
 fn norm(v: &[Rgb]) -> Rgb {
+    let pieces: Vec<Rgb> = v.par_chunks(PIECE).map(|piece| dot(piece, piece)).collect();
+    let squares = pieces.into_iter().fold([0.0; 3], added);
+    if squares.iter().all(|square| SAFE.contains(square)) {
+        return squares.map(f64::sqrt);
+    }
     let most = largest(v);
     let unit = most.map(|m| if m > 0.0 { m } else { 1.0 });
     let squares = v
@@ -150,8 +187,9 @@ fn norm(v: &[Rgb]) -> Rgb {
 }
 
 /// The vector over its length; a channel without length stays out of the game as zeros.
-fn normalised(v: &[Rgb], length: Rgb) -> Vec<Rgb> {
-    v.iter().map(|v| std::array::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { 0.0 })).collect()
+fn normalise(v: &mut [Rgb], length: Rgb) {
+    let over = |v: Rgb| std::array::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { 0.0 });
+    v.par_chunks_mut(PIECE).for_each(|piece| piece.iter_mut().for_each(|v| *v = over(*v)));
 }
 
 /// min ‖β e₁ − H y‖ for the growing Hessenberg matrix H, by Givens rotations, channel by channel.
