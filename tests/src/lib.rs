@@ -8,6 +8,7 @@ pub mod curved;
 pub mod levels;
 pub mod measure;
 pub mod model;
+pub mod modular;
 pub mod program;
 pub mod rooms;
 pub mod shapes;
