@@ -14,6 +14,7 @@ use equilux_formats::{
     LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
+use rayon::prelude::*;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -49,6 +50,17 @@ pub struct Oven<'a> {
 }
 
 impl Oven<'_> {
+    /// Read at once what the cache has of these parts: [`Oven::bake`] asks for one after the other.
+    pub fn read_ahead(&self, parts: &[PreparedPart]) {
+        let of = |part: &PreparedPart| {
+            let key = geometry_manifest(part, self.resolution).key();
+            (key, light_manifest(key.into(), &part.optics, part.solver).key())
+        };
+        let (form_factors, lights): (Vec<Key>, Vec<Key>) = parts.par_iter().map(of).unzip();
+        self.store.read_ahead::<BakedGeometry>(&form_factors);
+        self.store.read_ahead::<BakedLight>(&lights);
+    }
+
     /// Bake one part, or take from the cache what is there. None if the monitor was stopped.
     pub fn bake(&self, part: &PreparedPart) -> Result<Option<Baked>> {
         let manifest = geometry_manifest(part, self.resolution);

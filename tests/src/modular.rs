@@ -15,8 +15,9 @@ use std::path::{Path, PathBuf};
 const PITCH: f64 = 6.0;
 
 /// Writes part files and the scene of so many rooms into `folder`; returns the scene's file. In each room stand three crates
-/// and three pillars below a lamp; at the ends of the row doors are closed.
-pub fn write(folder: &Path, rooms: usize) -> PathBuf {
+/// and three pillars below a lamp; at the ends of the row doors are closed. `style` tells how a room is furnished by its
+/// number: rooms of one style are alike.
+pub fn write(folder: &Path, rooms: usize, style: impl Fn(usize) -> usize) -> PathBuf {
     let parts = folder.join("parts");
     std::fs::create_dir_all(&parts).expect("a folder");
     for (name, part) in [
@@ -29,7 +30,7 @@ pub fn write(folder: &Path, rooms: usize) -> PathBuf {
     ] {
         Model::of(&[Node::new(name, part)]).write(&parts.join(name).with_extension("glb"));
     }
-    let scene = json!({ "asset": { "version": "2.0" }, "scene": 0, "nodes": nodes(rooms),
+    let scene = json!({ "asset": { "version": "2.0" }, "scene": 0, "nodes": nodes(rooms, style),
         "scenes": [{ "nodes": (0..places(rooms)).collect::<Vec<_>>() }] });
     let file = folder.join("level.gltf");
     std::fs::write(&file, scene.to_string()).expect("a file");
@@ -44,7 +45,7 @@ pub fn places(rooms: usize) -> usize {
     8 * rooms + (rooms - 1) + 2
 }
 
-fn nodes(rooms: usize) -> Vec<Value> {
+fn nodes(rooms: usize, style: impl Fn(usize) -> usize) -> Vec<Value> {
     let half_turn = DQuat::from_rotation_y(std::f64::consts::PI);
     let mut nodes = vec![
         node("door", dvec3(-2.0, 0.0, 0.0), DQuat::IDENTITY, DVec3::ONE),
@@ -52,19 +53,20 @@ fn nodes(rooms: usize) -> Vec<Value> {
     ];
     for number in 0..rooms {
         let middle = DVec3::X * PITCH * number as f64;
-        // Every other room is mirrored; crates and pillars stand about as they like.
-        let mirror = if number % 2 == 0 { DVec3::ONE } else { dvec3(1.0, 1.0, -1.0) };
+        // Every other style is mirrored; crates and pillars stand about as they like.
+        let style = style(number);
+        let mirror = if style % 2 == 0 { DVec3::ONE } else { dvec3(1.0, 1.0, -1.0) };
         nodes.push(node("room", middle, DQuat::IDENTITY, mirror));
         if number + 1 < rooms {
             nodes.push(node("corridor", middle + 3.0 * DVec3::X, DQuat::IDENTITY, DVec3::ONE));
         }
         let mut light = node("lamp", middle + 2.75 * DVec3::Y, DQuat::IDENTITY, DVec3::ONE);
-        light["extras"]["emission_scale"] = json!([1.0, 0.25, 0.5][number % 3]);
+        light["extras"]["emission_scale"] = json!([1.0, 0.25, 0.5][style % 3]);
         nodes.push(light);
         for k in 0..3 {
-            let turn = DQuat::from_rotation_y(0.4 * (number + 2 * k) as f64);
+            let turn = DQuat::from_rotation_y(0.4 * (style + 2 * k) as f64);
             let at = middle + dvec3([-1.25, 1.0, 0.25][k], 0.0, [1.125, -1.25, 1.25][k]);
-            let mut wooden = node("crate", at, turn, DVec3::splat([0.75, 1.0, 0.5][(number + k) % 3]));
+            let mut wooden = node("crate", at, turn, DVec3::splat([0.75, 1.0, 0.5][(style + k) % 3]));
             if k == 1 {
                 wooden["extras"]["materials"] =
                     json!({ "wood": { "baseColorFactor": [0.125, 0.25, 0.5, 1] } });

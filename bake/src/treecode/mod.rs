@@ -107,12 +107,15 @@ pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
     if monitor.stopped() {
         return None;
     }
-    let block = Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
+    let older = request.revision.as_ref().filter(|older| older.is_in_place(&request.columns));
+    let unchanged = older.filter(|_| found.changed == 0).map(|older| older.old.clone());
+    let is_unchanged = unchanged.is_some();
+    let made = || Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
     Some(Timed {
-        block,
+        block: unchanged.unwrap_or_else(made),
         row_sums: found.sums,
         computed: found.computed,
-        is_unchanged: found.changed == 0,
+        is_unchanged,
         time: found.time,
     })
 }

@@ -74,6 +74,12 @@ impl Change {
 }
 
 impl Revision<'_> {
+    /// Whether the old block's numbers of senders are those of a block with these columns, as far as it has entries.
+    pub fn is_in_place(&self, columns: &Range<usize>) -> bool {
+        let stays = |column: usize| self.senders[column] == Some((columns.start + column) as u32);
+        self.old.senders() == columns.len() && self.old.senders_seen().all(stays)
+    }
+
     /// The rows of some receivers that see nothing that changed; none if a sender of theirs is gone.
     pub fn untouched(&self, request: &Request, elements: &Range<usize>) -> Option<RowGroup> {
         let group = self.old.group_of(elements.start - request.world.elements_of(request.receivers).start);
