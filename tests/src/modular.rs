@@ -55,7 +55,7 @@ fn nodes(rooms: usize, style: impl Fn(usize) -> usize) -> Vec<Value> {
         let middle = DVec3::X * PITCH * number as f64;
         // Every other style is mirrored; crates and pillars stand about as they like.
         let style = style(number);
-        let mirror = if style % 2 == 0 { DVec3::ONE } else { dvec3(1.0, 1.0, -1.0) };
+        let mirror = if style.is_multiple_of(2) { DVec3::ONE } else { dvec3(1.0, 1.0, -1.0) };
         nodes.push(node("room", middle, DQuat::IDENTITY, mirror));
         if number + 1 < rooms {
             nodes.push(node("corridor", middle + 3.0 * DVec3::X, DQuat::IDENTITY, DVec3::ONE));
