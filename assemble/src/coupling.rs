@@ -10,7 +10,7 @@ use equilux_bake::cached::{Made, Origin, cached, cached_or_revised, foreseen};
 use equilux_bake::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
-use equilux_bake::treecode::{Request, Resolution, Timed, block};
+use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
 use rayon::prelude::*;
 use std::collections::HashSet;
@@ -121,14 +121,14 @@ impl Coupler<'_> {
         let others: Vec<usize> = (0..self.placed.instances.len()).filter(|&l| l != instance).collect();
         let request = Request {
             world: &self.placed.world,
-            receivers: instance,
+            receivers: Audience::Instance(instance),
             senders: &others,
             columns: 0..self.placed.world.nodes.len(),
             already: None,
             resolution: self.resolution,
             revision: None,
         };
-        let Some(found) = self.block(COUPLING, request, Some(own), None)? else { return Ok(None) };
+        let Some(found) = self.block((instance, COUPLING), request, Some(own), None)? else { return Ok(None) };
         let Block { rows: coupling, origin, computed, time, .. } = found;
         Ok(Some(Coupled { coupling, origin, computed, corrected, time }))
     }
@@ -153,7 +153,7 @@ impl Coupler<'_> {
     fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Option<Corrected>> {
         let request = Request {
             world: &self.placed.world,
-            receivers: instance,
+            receivers: Audience::Instance(instance),
             senders: &[instance],
             columns: self.placed.world.nodes_of(instance),
             already: None,
@@ -163,7 +163,7 @@ impl Coupler<'_> {
         // The part alone is a scene too: what stands inside appeared in it.
         let part = &self.placed.part_of(instance).part;
         let alone = Older::alone(self.placed, instance, &intruders);
-        let Some(found) = self.block(CORRECTED, request, None, Some(alone))? else { return Ok(None) };
+        let Some(found) = self.block((instance, CORRECTED), request, None, Some(alone))? else { return Ok(None) };
         let Block { rows: self_block, origin, computed, key, time } = found;
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let optics = self.placed.paint_of(instance);
@@ -181,12 +181,11 @@ impl Coupler<'_> {
     /// from `otherwise`, or from the start.
     fn block(
         &self,
-        what: &str,
+        (instance, what): (usize, &str),
         request: Request,
         own: Option<&Rows>,
         otherwise: Option<Older>,
     ) -> Result<Option<Block>> {
-        let instance = request.receivers;
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
         let (mut time, mut computed) = (Duration::ZERO, 0);

@@ -7,7 +7,7 @@ use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
 use crate::prepare::PreparedPart;
-use crate::treecode::{Request, Resolution, block};
+use crate::treecode::{Audience, Request, Resolution, block};
 use crate::world::World;
 use equilux_formats::{
     BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Instance, Key,
@@ -71,7 +71,7 @@ impl Oven<'_> {
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
             let request = Request {
                 world: &world,
-                receivers: 0,
+                receivers: Audience::Instance(0),
                 senders: &[0],
                 columns: world.nodes_of(0),
                 already: None,

@@ -4,6 +4,7 @@
 mod curved;
 
 use curved::{Triangle, sphere, torus};
+use equilux_bake::outline::Plane;
 use equilux_bake::clusters::geometry;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::form_factor::polygon::Polygon;
@@ -58,7 +59,8 @@ impl Scene {
                 continue;
             }
             let occluder = &self.world.faces[face as usize];
-            let Some(pyramid) = plain::hidden_pyramid(receiver.centroid, occluder, sender) else { continue };
+            let before = Plane { normal: sender.normal, point: sender.corners.as_slice()[0] };
+            let Some(pyramid) = plain::hidden_pyramid(receiver.centroid, occluder, before) else { continue };
             pieces = subtract(pieces, |piece, outside| pyramid.subtract_from(piece, outside));
         }
         for mesh in seen {
