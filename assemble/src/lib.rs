@@ -16,6 +16,7 @@ mod explain;
 pub mod exposure;
 pub mod gltf_export;
 pub mod hull;
+pub mod lightmap;
 mod older;
 pub mod output_file;
 mod outputs;

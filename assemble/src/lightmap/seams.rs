@@ -1,0 +1,137 @@
+//! Seams: where two charts meet in one smooth surface, lookups on both sides of the edge must agree.
+//!
+//! Along every such edge, points are taken at the distance of the coarser chart's texels, so that they ask no more than
+//! its texels can give. With c_k the difference of the two bilinear lookups at point k as a row over texels, and v the
+//! values they had, the values x minimise |x − v|² + λ Σ_k (c_k·x)²: as close to v as agreement allows. Least squares over
+//! seams is due to Iwanicki (SIGGRAPH 2013, "Lighting Technology of The Last of Us"). (I + λCᵀC) x = v is solved by conjugate
+//! gradients.
+
+use super::atlas::{Atlas, Tile};
+use super::contacts::{Contact, smooth_contacts};
+use super::side::Side;
+use super::texels::bilinear;
+use equilux_formats::{Instance, Rgb};
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+
+/// λ: a jump shrinks to about a thousandth.
+const STIFFNESS: f64 = 1e3;
+/// Conjugate gradients end when the residual has shrunk by this factor; half floats keep 5e-4.
+const ENOUGH: f64 = 1e-7;
+/// More steps than the system's few distinct scales ever need.
+const MOST_STEPS: usize = 500;
+
+/// The difference of two lookups: texels of all charts by number, with weights.
+type Difference = Vec<(usize, f64)>;
+
+/// Make charts of `tiles` agree along their seams. `values`: for each tile one a texel of its rectangle, row after row.
+pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values: &mut [Vec<Rgb>]) {
+    let starts: Vec<usize> = tiles
+        .iter()
+        .scan(0, |next, tile| {
+            let start = *next;
+            *next += (tile.size[0] * tile.size[1]) as usize;
+            Some(start)
+        })
+        .collect();
+    let differences = differences(atlas, instances, tiles, &starts);
+    // Only texels at seams take part, numbered without gaps.
+    let texels: BTreeMap<usize, usize> = differences.iter().flatten().map(|&(texel, _)| (texel, 0)).collect();
+    let texels: Vec<usize> = texels.into_keys().collect();
+    let number = |texel: usize| texels.binary_search(&texel).expect("it was put there");
+    let rows: Vec<Difference> =
+        differences.iter().map(|row| row.iter().map(|&(texel, w)| (number(texel), w)).collect()).collect();
+    let place = |texel: usize| {
+        let tile = starts.partition_point(|&start| start <= texel) - 1;
+        (tile, texel - starts[tile])
+    };
+    let places: Vec<(usize, usize)> = texels.iter().map(|&texel| place(texel)).collect();
+    let solved: [Vec<f64>; 3] = std::array::from_fn(|channel| {
+        let had: Vec<f64> = places.iter().map(|&(tile, texel)| values[tile][texel][channel]).collect();
+        solve(&rows, &had)
+    });
+    for (i, &(tile, texel)) in places.iter().enumerate() {
+        // A fit may swing below zero next to a shadow; light does not.
+        values[tile][texel] = [0, 1, 2].map(|channel: usize| solved[channel][i].max(0.0));
+    }
+}
+
+/// The lookups that must agree, in the scene.
+fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[usize]) -> Vec<Difference> {
+    let (mut sides, mut tile_of) = (Vec::new(), Vec::new());
+    for (number, tile) in tiles.iter().enumerate() {
+        let placement = instances[tile.instance].placement;
+        sides.extend(atlas.chart_of(tile).0.sides.iter().map(|side| placed(side, placement)));
+        tile_of.resize(sides.len(), number);
+    }
+    let seams = smooth_contacts(&sides).into_iter().filter_map(|contact: Contact| {
+        let [a, b] = contact.sides.map(|side| tile_of[side]);
+        (a != b).then_some(([a, b], contact.ends))
+    });
+    let into_part: Vec<DAffine3> = instances.iter().map(|instance| instance.placement.inverse()).collect();
+    let lookup = |tile: usize, point: DVec3, sign: f64| {
+        let (grid, own) =
+            (atlas.chart_of(&tiles[tile]).1, into_part[tiles[tile].instance].transform_point3(point));
+        let weighted = bilinear(grid.texel_of(own), tiles[tile].size[0]);
+        weighted.map(|(texel, weight)| (starts[tile] + texel, sign * weight))
+    };
+    let mut differences = Vec::new();
+    for ([a, b], ends) in seams {
+        let along = |tile: usize| {
+            let ends = ends.map(|p| into_part[tiles[tile].instance].transform_point3(p));
+            let [from, to] = ends.map(|p| atlas.chart_of(&tiles[tile]).1.texel_of(p));
+            (to - from).length()
+        };
+        let steps = along(a).min(along(b)).round().max(1.0) as usize;
+        for step in 0..=steps {
+            let point = ends[0] + (ends[1] - ends[0]) * (step as f64 / steps as f64);
+            let both = [lookup(a, point, 1.0), lookup(b, point, -1.0)].concat();
+            differences.push(both.into_iter().filter(|&(_, weight)| weight != 0.0).collect());
+        }
+    }
+    differences
+}
+
+fn placed(side: &Side, placement: DAffine3) -> Side {
+    let corners = side.corners.map(|p| placement.transform_point3(p));
+    let mirrored = placement.matrix3.determinant() < 0.0;
+    Side::new(if mirrored { corners.flipped() } else { corners }, side.material)
+}
+
+/// (I + λCᵀC) x = v by conjugate gradients from v.
+fn solve(rows: &[Difference], v: &[f64]) -> Vec<f64> {
+    let apply = |x: &[f64]| {
+        let mut y = x.to_vec();
+        for row in rows {
+            let difference: f64 = row.iter().map(|&(i, weight)| weight * x[i]).sum();
+            row.iter().for_each(|&(i, weight)| y[i] += STIFFNESS * difference * weight);
+        }
+        y
+    };
+    let mut x = v.to_vec();
+    let mut residual: Vec<f64> = apply(&x).iter().zip(v).map(|(ax, v)| v - ax).collect();
+    let mut direction = residual.clone();
+    let mut square = dot(&residual, &residual);
+    let goal = square * ENOUGH * ENOUGH;
+    for _ in 0..MOST_STEPS {
+        if square <= goal {
+            break;
+        }
+        let image = apply(&direction);
+        let step = square / dot(&direction, &image);
+        add(&mut x, step, &direction);
+        add(&mut residual, -step, &image);
+        let next = dot(&residual, &residual);
+        let turned = residual.iter().zip(&direction).map(|(r, d)| r + next / square * d).collect();
+        (direction, square) = (turned, next);
+    }
+    x
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn add(to: &mut [f64], factor: f64, other: &[f64]) {
+    to.iter_mut().zip(other).for_each(|(to, other)| *to += factor * other);
+}
