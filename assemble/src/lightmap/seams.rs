@@ -2,9 +2,9 @@
 //!
 //! Along every such edge, points are taken at the distance of the coarser chart's texels, so that they ask no more than
 //! its texels can give. With c_k the difference of the two bilinear lookups at point k as a row over texels, and v the
-//! values they had, the values x minimise |x − v|² + λ Σ_k (c_k·x)²: as close to v as agreement allows. Least squares over
-//! seams is due to Iwanicki (SIGGRAPH 2013, "Lighting Technology of The Last of Us"). (I + λCᵀC) x = v is solved by conjugate
-//! gradients.
+//! values they had, the correction y minimises |y|² + μ Σ_(i, j) (y_i − y_j)² + λ Σ_k (c_k·(v + y))² over pairs of texels
+//! beside each other: as small and even as agreement allows, and whatever detail v has stays. Least squares over seams are
+//! due to Iwanicki (SIGGRAPH 2013, "Lighting Technology of The Last of Us"). The system is solved by conjugate gradients.
 
 use super::atlas::{Atlas, Tile};
 use super::contacts::{Contact, smooth_contacts};
@@ -16,10 +16,12 @@ use std::collections::BTreeMap;
 
 /// λ: a jump shrinks to about a thousandth.
 const STIFFNESS: f64 = 1e3;
+/// μ: a correction fades along the seam over about three texels.
+const EVENNESS: f64 = 10.0;
 /// Conjugate gradients end when the residual has shrunk by this factor; half floats keep 5e-4.
 const ENOUGH: f64 = 1e-7;
-/// More steps than the system's few distinct scales ever need.
-const MOST_STEPS: usize = 500;
+/// More steps than a system of this stiffness ever needs.
+const MOST_STEPS: usize = 1000;
 
 /// The difference of two lookups: texels of all charts by number, with weights.
 type Difference = Vec<(usize, f64)>;
@@ -36,23 +38,34 @@ pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values
         .collect();
     let differences = differences(atlas, instances, tiles, &starts);
     // Only texels at seams take part, numbered without gaps.
-    let texels: BTreeMap<usize, usize> = differences.iter().flatten().map(|&(texel, _)| (texel, 0)).collect();
-    let texels: Vec<usize> = texels.into_keys().collect();
-    let number = |texel: usize| texels.binary_search(&texel).expect("it was put there");
-    let rows: Vec<Difference> =
-        differences.iter().map(|row| row.iter().map(|&(texel, w)| (number(texel), w)).collect()).collect();
-    let place = |texel: usize| {
-        let tile = starts.partition_point(|&start| start <= texel) - 1;
-        (tile, texel - starts[tile])
+    let numbers: BTreeMap<usize, usize> =
+        differences.iter().flatten().map(|&(texel, _)| (texel, 0)).collect();
+    let texels: Vec<usize> = numbers.into_keys().collect();
+    let number = |texel: usize| texels.binary_search(&texel);
+    let places: Vec<(usize, usize)> = texels
+        .iter()
+        .map(|&texel| {
+            let tile = starts.partition_point(|&start| start <= texel) - 1;
+            (tile, texel - starts[tile])
+        })
+        .collect();
+    let inner = |&(texel, weight): &(usize, f64)| (number(texel).expect("it was put there"), weight);
+    let rows: Vec<Difference> = differences.iter().map(|row| row.iter().map(inner).collect()).collect();
+    let beside = |(i, &(tile, place)): (usize, &(usize, usize))| {
+        let width = tiles[tile].size[0] as usize;
+        let right = ((place + 1) % width != 0).then_some(texels[i] + 1);
+        let below = (place + width < values[tile].len()).then_some(texels[i] + width);
+        [right, below].into_iter().flatten().filter_map(move |texel| Some([i, number(texel).ok()?])).collect()
     };
-    let places: Vec<(usize, usize)> = texels.iter().map(|&texel| place(texel)).collect();
-    let solved: [Vec<f64>; 3] = std::array::from_fn(|channel| {
+    let pairs: Vec<[usize; 2]> = places.iter().enumerate().flat_map::<Vec<_>, _>(beside).collect();
+    let corrections: [Vec<f64>; 3] = std::array::from_fn(|channel| {
         let had: Vec<f64> = places.iter().map(|&(tile, texel)| values[tile][texel][channel]).collect();
-        solve(&rows, &had)
+        correction(&rows, &pairs, &had)
     });
     for (i, &(tile, texel)) in places.iter().enumerate() {
+        let value = &mut values[tile][texel];
         // A fit may swing below zero next to a shadow; light does not.
-        values[tile][texel] = [0, 1, 2].map(|channel: usize| solved[channel][i].max(0.0));
+        *value = [0, 1, 2].map(|channel: usize| (value[channel] + corrections[channel][i]).max(0.0));
     }
 }
 
@@ -98,18 +111,28 @@ fn placed(side: &Side, placement: DAffine3) -> Side {
     Side::new(if mirrored { corners.flipped() } else { corners }, side.material)
 }
 
-/// (I + λCᵀC) x = v by conjugate gradients from v.
-fn solve(rows: &[Difference], v: &[f64]) -> Vec<f64> {
-    let apply = |x: &[f64]| {
-        let mut y = x.to_vec();
+/// (I + μDᵀD + λCᵀC) y = −λCᵀC v by conjugate gradients.
+fn correction(rows: &[Difference], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f64> {
+    let add_agreement = |x: &[f64], y: &mut [f64]| {
         for row in rows {
             let difference: f64 = row.iter().map(|&(i, weight)| weight * x[i]).sum();
             row.iter().for_each(|&(i, weight)| y[i] += STIFFNESS * difference * weight);
         }
+    };
+    let apply = |x: &[f64]| {
+        let mut y = x.to_vec();
+        for &[i, j] in pairs {
+            let force = EVENNESS * (x[i] - x[j]);
+            y[i] += force;
+            y[j] -= force;
+        }
+        add_agreement(x, &mut y);
         y
     };
-    let mut x = v.to_vec();
-    let mut residual: Vec<f64> = apply(&x).iter().zip(v).map(|(ax, v)| v - ax).collect();
+    let mut y = vec![0.0; v.len()];
+    let mut residual = vec![0.0; v.len()];
+    add_agreement(v, &mut residual);
+    residual.iter_mut().for_each(|r| *r = -*r);
     let mut direction = residual.clone();
     let mut square = dot(&residual, &residual);
     let goal = square * ENOUGH * ENOUGH;
@@ -119,13 +142,13 @@ fn solve(rows: &[Difference], v: &[f64]) -> Vec<f64> {
         }
         let image = apply(&direction);
         let step = square / dot(&direction, &image);
-        add(&mut x, step, &direction);
+        add(&mut y, step, &direction);
         add(&mut residual, -step, &image);
         let next = dot(&residual, &residual);
         let turned = residual.iter().zip(&direction).map(|(r, d)| r + next / square * d).collect();
         (direction, square) = (turned, next);
     }
-    x
+    y
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
