@@ -31,8 +31,13 @@ pub fn texels(path: &Path) -> (usize, Vec<[f32; 3]>) {
 
 /// Writes lightmaps of `nodes` with texels of 5 cm.
 pub fn baked(nodes: &[Node], units: Units) -> Workshop {
+    divided(nodes, units, Division::Authored)
+}
+
+/// The same with other parts for the exchange. Lightmaps are of the scene's own parts all the same.
+fn divided(nodes: &[Node], units: Units, division: Division) -> Workshop {
     let workshop = Workshop::with(nodes);
-    let mut job = workshop.job(Division::Authored);
+    let mut job = workshop.job(division);
     job.lightmaps = Some(Wanted { texel_size: Some(0.05), units });
     job.pictures = Pictures::None;
     assembled(&job);
@@ -48,8 +53,10 @@ fn a_furnace_has_an_even_lightmap() {
         .map(|corners| corners.map(|p| p + DVec3::ONE))
         .fold(part(grey(0.5, 1.0)), triangle);
     let furnace = joined([room(grey(0.5, 1.0), DVec3::ZERO, dvec3(2.0, 2.0, 3.0)), ball]);
-    for (units, expected) in [(Units::Irradiance, 2.0), (Units::Bevy, 2.0 / PI)] {
-        let workshop = baked(&[Node::new("furnace", furnace.clone())], units);
+    for (units, division, expected) in
+        [(Units::Irradiance, Division::Authored, 2.0), (Units::Bevy, Division::Bisect(3), 2.0 / PI)]
+    {
+        let workshop = divided(&[Node::new("furnace", furnace.clone())], units, division);
         let (_, texels) = texels(&workshop.path("out/scene/lightmap.exr"));
         let lit: Vec<f32> = texels.into_flattened().into_iter().filter(|&h| h != 0.0).collect();
         // Half floats have eleven bits.

@@ -27,10 +27,11 @@ fn lookups<'a>(lightmap: &'a Lightmap) -> impl Iterator<Item = (usize, DVec3, f6
     (0..lightmap.tiles.len()).flat_map(move |tile| {
         let (chart, _) = lightmap.atlas.chart_of(&lightmap.tiles[tile]);
         let places = (0..=4).flat_map(|i| (0..=4).map(move |j| (f64::from(i) / 4.0, f64::from(j) / 4.0)));
-        let sides = chart.sides.iter().flat_map(move |side| places.clone().map(move |place| (side, place)));
-        sides.map(move |(side, (across, along))| {
+        let sides = chart.sides.iter().zip(&chart.planes);
+        let sides = sides.flat_map(move |side| places.clone().map(move |place| (side, place)));
+        sides.map(move |((side, &plane), (across, along))| {
             let point = point_of(side.corners.as_slice(), across, along);
-            (tile, point, lookup(lightmap, tile, point)[1])
+            (tile, point, lookup(lightmap, tile, plane, point)[1])
         })
     })
 }

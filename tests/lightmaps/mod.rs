@@ -1,5 +1,6 @@
 //! Lightmaps: what lies where in them, what light they hold, and what viewers make of the models that carry them.
 
+mod authored;
 mod files;
 mod light;
 mod places;
@@ -33,11 +34,11 @@ fn scene(part: Part, placements: &[DAffine3]) -> Scene {
     }
 }
 
-/// What a bilinear lookup gives for a point of a tile's chart, in the coordinates of its part.
-fn lookup(lightmap: &Lightmap, tile: usize, point: DVec3) -> Rgb {
+/// What a bilinear lookup gives for a point of a tile's chart in one of its planes, in the coordinates of its part.
+fn lookup(lightmap: &Lightmap, tile: usize, plane: usize, point: DVec3) -> Rgb {
     let Tile { size, .. } = lightmap.tiles[tile];
     let (_, grid) = lightmap.atlas.chart_of(&lightmap.tiles[tile]);
-    let weights = bilinear(grid.texel_of(point), size[0]);
+    let weights = bilinear(grid.texel_of(plane, point), size[0]);
     [0, 1, 2]
         .map(|channel: usize| weights.iter().map(|&(i, w)| w * lightmap.irradiance[tile][i][channel]).sum())
 }

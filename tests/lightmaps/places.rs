@@ -1,7 +1,8 @@
 //! Where things lie in a lightmap, for random parts in random places.
 
 use super::{point_of, scene};
-use equilux_assemble::lightmap::atlas::{Atlas, scale};
+use equilux_assemble::lightmap::atlas::Atlas;
+use equilux_assemble::lightmap::estimate::scale;
 use equilux_assemble::lightmap::grid::MARGIN;
 use equilux_assemble::lightmap::side::sides;
 use equilux_assemble::lightmap::texels::{Texel, Texels, bilinear};
@@ -91,7 +92,7 @@ proptest! {
         scene in any_scene(), texel in 0.05..0.6f64, (across, along) in (0.0..=1.0f64, 0.0..=1.0f64),
     ) {
         let atlas = Atlas::new(&scene, Some(texel)).expect("a small atlas");
-        let charts = &atlas.charts[0];
+        let charts = &atlas.layouts[0].charts;
         let count: usize = charts.iter().map(|chart| chart.sides.len()).sum();
         prop_assert_eq!(count, sides(&scene.parts[0]).len(), "sides in charts, and in the part");
         for (number, tile) in atlas.tiles().iter().enumerate() {
@@ -100,7 +101,7 @@ proptest! {
             let placement = scene.instances[tile.instance].placement;
             for (side, &plane) in chart.sides.iter().zip(&chart.planes) {
                 let point = point_of(side.corners.as_slice(), across, along);
-                let place = grid.texel_of(point);
+                let place = grid.texel_of(plane, point);
                 // A point on the line between two texels belongs to either.
                 let own = |t: &&Texel| (0..2).all(|i| (place[i] - 0.5 - f64::from(t.at[i])).abs() <= 0.5 + 1e-6);
                 let facing = placement.transform_vector3(side.normal).normalize();

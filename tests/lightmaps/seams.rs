@@ -32,19 +32,19 @@ fn disagreement(scene: &Scene, depth: f64) -> f64 {
     let lightmap = Lightmap::new(scene, &atlas, with_a_jump, &Monitor::default());
     let differs = |step: u32| {
         let point = dvec3(1.0, f64::from(step) / 64.0 * depth, 0.0);
-        (lookup(&lightmap, 0, point)[0] - lookup(&lightmap, 1, point)[0]).abs()
+        (lookup(&lightmap, 0, 0, point)[0] - lookup(&lightmap, 1, 0, point)[0]).abs()
     };
     (0..=64).map(differs).fold(0.0, f64::max)
 }
 
-/// The jump is 1. With equal grids only the finite stiffness is left, 1e-3; where texels of the one lie between those of
-/// the other, their lookups bend at different places, which a ramp of 0.02 a texel beside a jump of 1 shows by some 1e-2.
+/// The jump is 1. With equal grids only the finite stiffness is left: half a thousandth. Where texels of the one lie between
+/// those of the other, lookups bend at different places, and the correction is as even as it may be, not quite.
 #[test]
 fn lookups_agree_along_smooth_seams_and_nowhere_else() {
     for (case, tilt, depth, low, high) in [
         ("one plane, equal grids", 0.0, 1.0, 0.0, 1e-3),
         ("bent by 25°, equal grids", 25f64.to_radians(), 1.0, 0.0, 1e-3),
-        ("one plane, grids that do not fit", 0.0, 0.73, 0.0, 5e-2),
+        ("one plane, grids that do not fit", 0.0, 0.73, 0.0, 5e-3),
         ("an edge of 40°", 40f64.to_radians(), 1.0, 0.9, 1.2),
     ] {
         let found = disagreement(&scene(halves(tilt, depth), &[DAffine3::IDENTITY]), depth);
@@ -61,8 +61,8 @@ fn instances_that_touch_agree_too() {
     let light = |texels: &Texels| vec![[texels.instance as f64; 3]; texels.texels.len()];
     let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default());
     let middle = [dvec3(1.0, 0.5, 0.0), dvec3(0.0, 0.5, 0.0)];
-    let [left, right] = [0, 1].map(|tile: usize| lookup(&lightmap, tile, middle[tile])[0]);
+    let [left, right] = [0, 1].map(|tile: usize| lookup(&lightmap, tile, 0, middle[tile])[0]);
     assert!((left - right).abs() < 1e-3, "{left} and {right} on the edge between light 0 and 1");
-    let far = lookup(&lightmap, 0, dvec3(0.5, 0.5, 0.0))[0];
+    let far = lookup(&lightmap, 0, 0, dvec3(0.5, 0.5, 0.0))[0];
     assert!(far == 0.0, "half a metre away light is {far}, expected 0 as it was");
 }

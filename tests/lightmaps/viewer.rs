@@ -98,7 +98,7 @@ fn sights(workshop: &Workshop) -> Vec<Sight> {
         let seen =
             |h: [f64; 3]| [0, 1, 2].map(|c| (material.emission[c] + material.reflectance[c] * h[c]) / PI);
         let point = chart.sides[0].corners.centroid();
-        let weights = bilinear(grid.texel_of(point), tile.size[0]);
+        let weights = bilinear(grid.texel_of(chart.planes[0], point), tile.size[0]);
         let h = [0, 1, 2].map(|c: usize| weights.iter().map(|&(i, w)| w * f64::from(own(i)[c])).sum());
         let all = (0..(tile.size[0] * tile.size[1]) as usize).map(|i| seen(own(i).map(f64::from)));
         sights.push(Sight {

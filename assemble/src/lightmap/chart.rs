@@ -25,6 +25,19 @@ pub struct Chart {
     pub planes: Vec<usize>,
 }
 
+impl Chart {
+    /// How many planes it lies in.
+    pub fn plane_count(&self) -> usize {
+        self.planes.iter().max().map_or(0, |&last| last + 1)
+    }
+
+    /// The largest of the sides in a plane: its plane is known best.
+    pub fn largest_in(&self, plane: usize) -> &Side {
+        let sides = self.sides.iter().zip(&self.planes).filter(|(_, of)| **of == plane);
+        sides.map(|(side, _)| side).max_by(|a, b| a.area.total_cmp(&b.area)).expect("a plane has a side")
+    }
+}
+
 /// The charts of a part.
 pub fn charts(part: &Part) -> Vec<Chart> {
     let growth = Growth::new(sides(part));

@@ -22,6 +22,11 @@ pub struct Contact {
     opposed: bool,
 }
 
+/// The contacts of neighbours of one orientation, however they are bent.
+pub fn opposed_contacts(sides: &[Side]) -> impl Iterator<Item = Contact> {
+    contacts(sides, tolerance(sides)).into_iter().filter(|contact| contact.opposed)
+}
+
 /// The contacts across which light changes smoothly: the sides face the same way to within [`SMOOTH`], and no third
 /// side stands on the edge and parts the light on them.
 pub fn smooth_contacts(sides: &[Side]) -> Vec<Contact> {
@@ -124,13 +129,12 @@ fn shared(a: [DVec3; 2], b: [DVec3; 2], tolerance: f64) -> Option<[DVec3; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use equilux_formats::MaterialId;
+    use equilux_formats::{Corners, MaterialId, Surface};
     use glam::dvec3;
 
     fn side(corners: [[f64; 3]; 4]) -> Side {
-        Side::new(Corners::quad(corners.map(DVec3::from_array)), MaterialId(0))
+        Side::of(&Surface::new(Corners::quad(corners.map(DVec3::from_array)), MaterialId(0)))
     }
-    use equilux_formats::Corners;
 
     /// The square over `[x, x + 1]` × `[y, y + 1]` at z = 0, facing up.
     fn tile(x: f64, y: f64) -> Side {

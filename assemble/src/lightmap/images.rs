@@ -1,7 +1,7 @@
 //! A lightmap as images: half-float EXR for engines, 8-bit PNG for people and for models.
 
-use super::Lightmap;
 use super::atlas::Tile;
+use super::{Holds, Lightmap};
 use crate::canvas::srgb;
 use crate::exposure::Exposure;
 use equilux_formats::{MaterialId, Rgb};
@@ -57,16 +57,21 @@ pub fn half_scale(most: f64) -> f64 {
     if fits { 1.0 } else { 2f64.powi(10 - most.log2().floor() as i32) }
 }
 
-/// One image of the lightmap: for each texel what `value` makes of its tile and place in it, else `empty`.
+/// One image of the lightmap: for each texel what `value` makes of its tile and place in it, else `empty`. Rectangles of
+/// an author's layout may overlap: what holds some of a chart goes before what is only near one.
 fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(usize, usize) -> T) -> Vec<T> {
     let [width, height] = lightmap.atlas.images[image].map(|side| side as usize);
     let mut texels = vec![empty; width * height];
     let here = |(_, tile): &(usize, &Tile)| tile.spot.image == image;
-    for (number, tile) in lightmap.tiles.iter().enumerate().filter(here) {
-        let [left, top] = tile.spot.at.map(|at| at as usize);
-        let [columns, rows] = tile.size.map(|side| side as usize);
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-            texels[(top + row) * width + left + column] = value(number, row * columns + column);
+    for held in [Holds::Margin, Holds::Chart] {
+        for (number, tile) in lightmap.tiles.iter().enumerate().filter(here) {
+            let [left, top] = tile.spot.at.map(|at| at as usize);
+            let columns = tile.size[0] as usize;
+            let holds = lightmap.holds[number].iter().enumerate();
+            for (index, _) in holds.filter(|(_, holds)| **holds == held) {
+                let (row, column) = (index / columns, index % columns);
+                texels[(top + row) * width + left + column] = value(number, index);
+            }
         }
     }
     texels

@@ -1,5 +1,6 @@
 //! What lies where in a lightmap, for programs: `lightmaps.json`.
 
+use super::pack::Spot;
 use super::{Lightmap, Units};
 use serde_json::{Value, json};
 
@@ -19,7 +20,7 @@ pub fn listing(lightmap: &Lightmap, images: &[[File; 2]], units: Units, scale: f
         "units": units.name(),
         "scale": scale,
         "texel_size": lightmap.atlas.texel_size,
-        "uv": "TEXCOORD_1 of lightmapped.glb, times scale, plus offset; (0, 0) is the upper left corner of the image",
+        "uv": "TEXCOORD_1 of lightmapped.glb (the author's own where it could be kept), times scale, plus offset; (0, 0) is the upper left corner of the image",
         "images": lightmap.atlas.images.iter().zip(images).map(|([width, height], [exr, png])| json!({
             "file": exr.name, "width": width, "height": height, "blake3": hash(exr),
             "preview": png.name, "preview_blake3": hash(png),
@@ -50,10 +51,12 @@ pub struct Rectangle {
 /// The rectangles of an instance's sheets.
 pub fn rectangles(lightmap: &Lightmap, instance: usize) -> Vec<Rectangle> {
     let (layout, own) = (lightmap.atlas.layout_of(instance), &lightmap.atlas.instances[instance]);
-    let rectangle = |(sheet, spot): (&[u32; 2], &super::pack::Spot)| {
+    let rectangle = |(sheet, spot): (&[u32; 2], &Spot)| {
         let whole = lightmap.atlas.images[spot.image];
         let share = |of: [u32; 2]| [0, 1].map(|side| f64::from(of[side]) / f64::from(whole[side]));
-        Rectangle { image: spot.image, offset: share(spot.at), scale: share(*sheet) }
+        let (offset, scale) =
+            (spot.at.map(|at| at + layout.border), sheet.map(|side| side - 2 * layout.border));
+        Rectangle { image: spot.image, offset: share(offset), scale: share(scale) }
     };
     layout.sheets.iter().zip(&own.sheets).map(rectangle).collect()
 }

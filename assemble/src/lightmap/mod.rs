@@ -7,9 +7,12 @@
 //!     atlas × instances → texels → irradiance → light around charts → seams → images, model, list
 
 pub mod atlas;
+mod authored;
+mod bounds;
 pub mod chart;
 pub mod contacts;
 mod dilate;
+pub mod estimate;
 pub mod grid;
 mod images;
 mod listing;
@@ -17,6 +20,7 @@ mod model;
 mod nearest;
 mod overlap;
 pub mod pack;
+pub mod patch;
 mod seams;
 pub mod side;
 pub mod texels;
@@ -52,8 +56,21 @@ pub struct Lightmap<'a> {
     pub tiles: Vec<Tile>,
     /// Irradiance, W/m², linear RGB, for each tile one a texel of its rectangle, row after row.
     pub irradiance: Vec<Vec<Rgb>>,
+    /// For each of these what of the chart it holds.
+    holds: Vec<Vec<Holds>>,
     /// What each instance's materials do with light.
     materials: Vec<Vec<Material>>,
+}
+
+/// What of its chart a texel holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Holds {
+    /// Nothing, and it is not near.
+    Nothing,
+    /// Light for lookups beside the chart.
+    Margin,
+    /// Some of the chart.
+    Chart,
 }
 
 /// About so many texels are worked on at once by a thread.
@@ -71,7 +88,7 @@ impl<'a> Lightmap<'a> {
         let bands: Vec<(usize, Range<u32>)> = tiles
             .iter()
             .enumerate()
-            .flat_map(|(number, tile)| bands(tile).map(move |rows| (number, rows)))
+            .flat_map(|(number, tile)| bands(tile.size).map(move |rows| (number, rows)))
             .collect();
         monitor.begin("lightmap", bands.len());
         let lit: Vec<Vec<([u32; 2], Rgb)>> = bands
@@ -82,6 +99,11 @@ impl<'a> Lightmap<'a> {
                 let placement = scene.instances[tile.instance].placement;
                 let texels = Texels::new(chart, grid, rows.clone(), tile.instance, placement);
                 let light = irradiance(&texels);
+                assert_eq!(light.len(), texels.texels.len(), "one value a texel");
+                assert!(
+                    light.iter().flatten().all(|h| h.is_finite()),
+                    "irradiance must be a number: {light:?}"
+                );
                 monitor.advance(1);
                 texels.texels.iter().map(|texel| texel.at).zip(light).collect()
             })
@@ -93,14 +115,18 @@ impl<'a> Lightmap<'a> {
             lit.into_iter()
                 .for_each(|([x, y], light)| values[*number][(y * width + x) as usize] = Some(light));
         }
-        let filled = |(values, tile): (&mut Vec<Option<Rgb>>, &Tile)| {
-            dilate::dilate(values, tile.size[0]);
-            values.iter().map(|value| value.unwrap_or_default()).collect()
-        };
-        let mut irradiance: Vec<Vec<Rgb>> = values.par_iter_mut().zip(&tiles).map(filled).collect();
+        let mut holds: Vec<Vec<Holds>> =
+            values.iter().map(|values| values.iter().map(held).collect()).collect();
+        values.par_iter_mut().zip(&tiles).for_each(|(values, tile)| dilate::dilate(values, tile.size[0]));
+        for (holds, values) in holds.iter_mut().zip(&values) {
+            let reached = holds.iter_mut().zip(values).filter(|(_, value)| value.is_some());
+            reached.for_each(|(holds, _)| *holds = Holds::Margin.max(*holds));
+        }
+        let filled = |values: Vec<Option<Rgb>>| values.into_iter().map(Option::unwrap_or_default).collect();
+        let mut irradiance: Vec<Vec<Rgb>> = values.into_iter().map(filled).collect();
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
-        Self { scene, atlas, materials: materials.collect(), tiles, irradiance }
+        Self { scene, atlas, materials: materials.collect(), tiles, irradiance, holds }
     }
 
     /// The material of a tile.
@@ -122,8 +148,12 @@ impl<'a> Lightmap<'a> {
     }
 }
 
-fn bands(tile: &Tile) -> impl Iterator<Item = Range<u32>> {
-    let [width, height] = tile.size;
+fn held(value: &Option<Rgb>) -> Holds {
+    if value.is_some() { Holds::Chart } else { Holds::Nothing }
+}
+
+/// The rows of a rectangle in pieces of which each fits in memory with its footprints.
+fn bands([width, height]: [u32; 2]) -> impl Iterator<Item = Range<u32>> {
     let rows = (BAND / width).max(1);
     (0..height.div_ceil(rows)).map(move |band| band * rows..(band * rows + rows).min(height))
 }

@@ -9,7 +9,7 @@ use super::Lightmap;
 use super::images::Peaks;
 use super::listing::rectangles;
 use equilux_formats::{MaterialId, Rgb};
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, UVec2, Vec2, Vec3};
 use gltf::binary::{Glb, Header};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -81,15 +81,14 @@ impl Document {
     fn add_vertices(&mut self, lightmap: &Lightmap, layout: usize) -> Vec<Primitive> {
         let layout = &lightmap.atlas.layouts[layout];
         let mut groups: BTreeMap<(MaterialId, usize), Vec<(Vec3, Vec2)>> = BTreeMap::new();
-        let charts = &lightmap.atlas.charts[layout.part.index()];
-        for ((chart, grid), spot) in charts.iter().zip(&layout.grids).zip(&layout.spots) {
+        for ((chart, grid), spot) in layout.charts.iter().zip(&layout.grids).zip(&layout.spots) {
             let group = groups.entry((chart.material, spot.image)).or_default();
-            let [width, height] = layout.sheets[spot.image].map(f64::from);
-            let vertex = |p: DVec3| {
-                let texel = grid.texel_of(p) + glam::dvec2(f64::from(spot.at[0]), f64::from(spot.at[1]));
-                (p.as_vec3(), (texel / glam::dvec2(width, height)).as_vec2())
-            };
-            group.extend(chart.sides.iter().flat_map(|side| triangles(side.corners.as_slice())).map(vertex));
+            let size = UVec2::from(layout.sheets[spot.image]) - 2 * layout.border;
+            let first = UVec2::from(spot.at).as_dvec2() - f64::from(layout.border);
+            for (side, &plane) in chart.sides.iter().zip(&chart.planes) {
+                let coordinates = |p: DVec3| ((grid.texel_of(plane, p) + first) / size.as_dvec2()).as_vec2();
+                group.extend(triangles(side.corners.as_slice()).map(|p| (p.as_vec3(), coordinates(p))));
+            }
         }
         let primitive = |((material, sheet), vertices): ((MaterialId, usize), Vec<(Vec3, Vec2)>)| {
             let [positions, coordinates] = self.add_accessors(&vertices);

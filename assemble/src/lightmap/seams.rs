@@ -71,30 +71,29 @@ pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values
 
 /// The lookups that must agree, in the scene.
 fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[usize]) -> Vec<Difference> {
-    let (mut sides, mut tile_of) = (Vec::new(), Vec::new());
+    let (mut sides, mut whose) = (Vec::new(), Vec::new());
     for (number, tile) in tiles.iter().enumerate() {
         let placement = instances[tile.instance].placement;
-        sides.extend(atlas.chart_of(tile).0.sides.iter().map(|side| placed(side, placement)));
-        tile_of.resize(sides.len(), number);
+        let (chart, _) = atlas.chart_of(tile);
+        sides.extend(chart.sides.iter().map(|side| Side::of(&side.surface().placed(placement))));
+        whose.extend(chart.planes.iter().map(|&plane| (number, plane)));
     }
     let seams = smooth_contacts(&sides).into_iter().filter_map(|contact: Contact| {
-        let [a, b] = contact.sides.map(|side| tile_of[side]);
-        (a != b).then_some(([a, b], contact.ends))
+        let [a, b] = contact.sides.map(|side| whose[side]);
+        (a.0 != b.0).then_some(([a, b], contact.ends))
     });
     let into_part: Vec<DAffine3> = instances.iter().map(|instance| instance.placement.inverse()).collect();
-    let lookup = |tile: usize, point: DVec3, sign: f64| {
-        let (grid, own) =
-            (atlas.chart_of(&tiles[tile]).1, into_part[tiles[tile].instance].transform_point3(point));
-        let weighted = bilinear(grid.texel_of(own), tiles[tile].size[0]);
-        weighted.map(|(texel, weight)| (starts[tile] + texel, sign * weight))
+    let texel = |(tile, plane): (usize, usize), point: DVec3| {
+        let own = into_part[tiles[tile].instance].transform_point3(point);
+        atlas.chart_of(&tiles[tile]).1.texel_of(plane, own)
+    };
+    let lookup = |side: (usize, usize), point: DVec3, sign: f64| {
+        let weighted = bilinear(texel(side, point), tiles[side.0].size[0]);
+        weighted.map(|(texel, weight)| (starts[side.0] + texel, sign * weight))
     };
     let mut differences = Vec::new();
     for ([a, b], ends) in seams {
-        let along = |tile: usize| {
-            let ends = ends.map(|p| into_part[tiles[tile].instance].transform_point3(p));
-            let [from, to] = ends.map(|p| atlas.chart_of(&tiles[tile]).1.texel_of(p));
-            (to - from).length()
-        };
+        let along = |side| (texel(side, ends[1]) - texel(side, ends[0])).length();
         let steps = along(a).min(along(b)).round().max(1.0) as usize;
         for step in 0..=steps {
             let point = ends[0] + (ends[1] - ends[0]) * (step as f64 / steps as f64);
@@ -103,12 +102,6 @@ fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[
         }
     }
     differences
-}
-
-fn placed(side: &Side, placement: DAffine3) -> Side {
-    let corners = side.corners.map(|p| placement.transform_point3(p));
-    let mirrored = placement.matrix3.determinant() < 0.0;
-    Side::new(if mirrored { corners.flipped() } else { corners }, side.material)
 }
 
 /// (I + μDᵀD + λCᵀC) y = −λCᵀC v by conjugate gradients.

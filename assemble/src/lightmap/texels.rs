@@ -2,7 +2,8 @@
 //! instance's placement; out come texels with their footprints in scene coordinates.
 
 use super::chart::Chart;
-use super::grid::{Grid, Patch};
+use super::grid::Grid;
+use super::patch::Patch;
 use equilux_bake::form_factor::polygon::{Polygon, Side, clip};
 use equilux_formats::MaterialId;
 use glam::{DAffine3, DVec2, DVec3};
@@ -54,15 +55,16 @@ impl Texel {
 impl Texels {
     /// The texels of `chart` in these `rows` of its rectangle; `instance` places it by `placement`, a similarity.
     pub fn new(chart: &Chart, grid: &Grid, rows: Range<u32>, instance: usize, placement: DAffine3) -> Self {
-        let patches = patches(chart, grid);
+        let patches: Vec<Patch> = grid.patches().copied().collect();
         let mut texels: BTreeMap<[u32; 2], Vec<Piece>> = BTreeMap::new();
         let determinant = placement.matrix3.determinant();
         let grows = determinant.abs().cbrt().powi(2);
         for (side, &patch) in chart.sides.iter().zip(&chart.planes) {
             let on_plane = &patches[patch];
-            let seen: Polygon =
-                side.corners.as_slice().iter().map(|&p| grid.texel_of(p).extend(0.0)).collect();
+            let texel = |&p: &DVec3| grid.texel_of(patch, p).extend(0.0);
+            let seen: Polygon = side.corners.as_slice().iter().map(texel).collect();
             let normal = placement.transform_vector3(side.normal).normalize();
+            let turned_over = (determinant < 0.0) != (area(&seen) < 0.0);
             // The side's own share, whatever its plane is taken to be: so areas add up to that of the sides.
             let ratio = side.area / area(&seen) * grows;
             let Some(seen) = between(seen, &rows) else { continue };
@@ -70,7 +72,7 @@ impl Texels {
                 let area = area(&piece) * ratio;
                 let point = |p: &DVec3| placement.transform_point3(on_plane.point(p.truncate()));
                 let mut corners: Polygon = piece.iter().map(point).collect();
-                if determinant < 0.0 {
+                if turned_over {
                     corners.reverse();
                 }
                 texels.entry([row, column]).or_default().push(Piece { patch, corners, normal, area });
@@ -84,16 +86,6 @@ impl Texels {
             texels: texels.into_iter().map(texel).collect(),
         }
     }
-}
-
-/// A patch for each plane of the chart, on the largest side that lies in it: its plane is known best.
-pub fn patches(chart: &Chart, grid: &Grid) -> Vec<Patch> {
-    let count = chart.planes.iter().max().map_or(0, |&last| last + 1);
-    let largest = |plane: usize| {
-        let sides = chart.sides.iter().zip(&chart.planes).filter(|(_, of)| **of == plane);
-        sides.map(|(side, _)| side).max_by(|a, b| a.area.total_cmp(&b.area)).expect("a plane has a side")
-    };
-    (0..count).map(largest).map(|side| grid.patch(side.corners.as_slice()[0], side.normal)).collect()
 }
 
 /// Twice the area of a polygon in the plane z = 0.

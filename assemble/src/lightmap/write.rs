@@ -63,7 +63,8 @@ pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposur
     let scaled = format!(
         "half floats do not reach the lightmap's brightest light, {most:.3e}: its numbers are multiplied by {scale}"
     );
-    Ok(Saved { paths, notes: if scale == 1.0 { vec![] } else { vec![scaled] } })
+    let notes = lightmap.atlas.notes.iter().cloned().chain((scale != 1.0).then_some(scaled));
+    Ok(Saved { paths, notes: notes.collect() })
 }
 
 /// The first image has no number: mostly it is the only one.
