@@ -63,7 +63,7 @@ fn corner(i: usize, width: usize) -> DVec2 {
 }
 
 /// Linear light (0..1) as a byte of sRGB. IEC 61966-2-1.
-fn srgb(light: f64) -> u8 {
+pub(crate) fn srgb(light: f64) -> u8 {
     let encoded = if light <= 0.0031308 { 12.92 * light } else { 1.055 * light.powf(1.0 / 2.4) - 0.055 };
     (encoded * 255.0).round() as u8
 }

@@ -1,6 +1,7 @@
 //! The command line of `assemble`.
 
 use crate::exchange::{Goal, Method};
+use crate::lightmap::{Units, Wanted};
 use crate::plan::{Plan, plan};
 use crate::proof::sample::ExactRows;
 use crate::report::Report;
@@ -71,6 +72,15 @@ struct Assembly {
     /// Which pictures to draw; the result as a model is always written
     #[arg(long, value_name = "WHICH", default_value = "rounds")]
     pictures: Drawn,
+    /// Write lightmaps: lightmap.exr and .png, what lies where in them, and models that carry them
+    #[arg(long)]
+    lightmaps: bool,
+    /// Texels of lightmaps are at most so large [default: what makes about 1024 x 1024 of them]
+    #[arg(long, value_name = "METRES", requires = "lightmaps", value_parser = texel_size)]
+    texel_size: Option<f64>,
+    /// What the numbers in lightmap.exr are
+    #[arg(long, value_name = "UNITS", requires = "lightmaps", default_value = "irradiance")]
+    lightmap_units: LightmapUnits,
     /// Also solve the classic whole-scene matrix and print the largest difference
     #[arg(long)]
     verify: bool,
@@ -106,12 +116,22 @@ enum Drawn {
     None,
 }
 
+/// The units' name on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum LightmapUnits {
+    /// Irradiance, W/m², as three.js takes it
+    Irradiance,
+    /// Irradiance over pi, what Bevy multiplies by its lightmap_exposure (683 for watts) and takes for cd/m²
+    Bevy,
+}
+
 const EXAMPLES: &str = "\
 Examples:
   assemble scenes/shadow/shadow.glb                    pictures of its rounds in out/shadow/
   assemble scenes/house/house.gltf --element-size 0.3  a level from part files
   assemble scenes/wood/wood.glb --bisect 8 --verify    parts by planes, compared with the whole
   assemble plan scenes/house/house.gltf                what would be computed, and why
+  assemble scenes/house/house.gltf --lightmaps         with lightmaps for game engines
   assemble scenes/house/house.gltf --watch             again whenever one of its files is saved
 Ctrl-C ends the exchange after the current round; everything is still written.";
 
@@ -215,6 +235,13 @@ impl Assembly {
                 Drawn::Last => Pictures::Last,
                 Drawn::None => Pictures::None,
             },
+            lightmaps: self.lightmaps.then_some(Wanted {
+                texel_size: self.texel_size,
+                units: match self.lightmap_units {
+                    LightmapUnits::Irradiance => Units::Irradiance,
+                    LightmapUnits::Bevy => Units::Bevy,
+                },
+            }),
             elements: self.elements.clone(),
             depfile: self.depfile.clone(),
             cache_limit: self.options.cache_limit,
@@ -227,6 +254,13 @@ fn exact_rows(text: &str) -> Result<ExactRows, String> {
         _ if text == "all" => Ok(ExactRows::All),
         Ok(rows) => Ok(ExactRows::About(rows)),
         Err(_) => Err("exact rows are a whole number of them, or `all`".into()),
+    }
+}
+
+fn texel_size(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
+        _ => Err("a texel size is a length above zero, metres".into()),
     }
 }
 

@@ -17,6 +17,7 @@ pub mod exposure;
 pub mod gather;
 pub mod gltf_export;
 pub mod hull;
+pub mod lightmap;
 mod older;
 pub mod output_file;
 mod outputs;

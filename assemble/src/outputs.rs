@@ -5,6 +5,8 @@ use crate::canvas::Canvas;
 use crate::classic::Classic;
 use crate::exchange::Outcome;
 use crate::exposure::Exposure;
+use crate::lightmap::atlas::Atlas;
+use crate::lightmap::{self, Lightmap, Nearest, Saved};
 use crate::picture::{shade, wireframe, write_png};
 use crate::placed::Placed;
 use crate::run::{Job, Pictures};
@@ -29,6 +31,16 @@ pub struct Light<'a> {
     pub outcome: &'a Outcome,
     /// The classic solution, if asked for.
     pub classic: Option<&'a Classic>,
+    /// The plan of the lightmap, if asked for.
+    pub atlas: Option<&'a Atlas>,
+}
+
+/// What was written.
+pub struct Written {
+    /// The paths, for a person.
+    pub paths: Vec<String>,
+    /// What a person should know of them.
+    pub notes: Vec<String>,
 }
 
 /// Fail where the outputs could not be written, before hours are spent on them. Leaves nothing behind.
@@ -58,8 +70,8 @@ fn unusable(folder: &Path, error: &std::io::Error) -> Error {
     )
 }
 
-/// Write all outputs; returns the paths written, for a person.
-pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> Result<Vec<String>> {
+/// Write all outputs.
+pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> Result<Written> {
     let folder = job.out.join(&scene.name);
     prepare_folder(&folder)?;
     let elements = &light.placed.world.elements;
@@ -74,8 +86,28 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
         lines.extend(draw_all(job, &folder, light, &canvas, exposure, monitor)?);
         exposure
     };
-    lines.extend(write_tables(job, &folder, light, exposure)?.iter().map(|path| path.display().to_string()));
-    Ok(lines)
+    let mut written = write_tables(job, &folder, light, exposure)?;
+    let lightmaps = write_lightmaps(job, &folder, scene, light, exposure, monitor)?;
+    let notes = lightmaps.map(|lightmaps| {
+        written.extend(lightmaps.paths);
+        lightmaps.notes
+    });
+    lines.extend(written.iter().map(|path| path.display().to_string()));
+    Ok(Written { paths: lines, notes: notes.unwrap_or_default() })
+}
+
+fn write_lightmaps(
+    job: &Job,
+    folder: &Path,
+    scene: &Scene,
+    light: &Light,
+    exposure: Exposure,
+    monitor: &Monitor,
+) -> Result<Option<Saved>> {
+    let (Some(wanted), Some(atlas)) = (&job.lightmaps, light.atlas) else { return Ok(None) };
+    let nearest = Nearest::new(&light.placed.world.elements, &light.outcome.irradiance);
+    let lightmap = Lightmap::new(scene, atlas, |texels| nearest.irradiance(texels), monitor);
+    lightmap::write(folder, &lightmap, wanted.units, exposure).map(Some)
 }
 
 /// Draw the pictures that are wanted; returns the paths written, for a person.

@@ -5,7 +5,9 @@ use crate::classic::{classic, whole_optics};
 use crate::coupling::{Coupled, Coupler};
 use crate::exchange::{Goal, Method, exchange, nodes};
 use crate::explain::explained;
-use crate::outputs::{Light, RESULT, check_writable, write_all};
+use crate::lightmap::Wanted;
+use crate::lightmap::atlas::Atlas;
+use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
 use crate::placed::Placed;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
@@ -57,6 +59,8 @@ pub struct Job {
     pub warm: bool,
     /// Which rounds get pictures.
     pub pictures: Pictures,
+    /// Which lightmaps to write; none to write none.
+    pub lightmaps: Option<Wanted>,
     /// Where to write the table of elements.
     pub elements: Option<PathBuf>,
     /// Where to write for build tools which files were read.
@@ -71,6 +75,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let scene = import_scene(&job.scene)?;
     let prepared = prepare(&scene, &job.preparation)?;
     check_writable(job, &scene)?;
+    let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
     let store = Store::open(&job.cache)?;
     let stopped = || {
@@ -96,8 +101,14 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let peak = peak_rss();
     let classic = if job.verify { classic(&placed, monitor) } else { None };
 
-    let light = Light { placed: &placed, optics: &optics, outcome: &outcome, classic: classic.as_ref() };
-    let outputs = write_all(job, &scene, &light, monitor)?;
+    let light = Light {
+        placed: &placed,
+        optics: &optics,
+        outcome: &outcome,
+        classic: classic.as_ref(),
+        atlas: atlas.as_ref(),
+    };
+    let Written { paths: outputs, notes } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {
         depfile::write(path, &job.out.join(&scene.name).join(RESULT), &scene.sources)?;
     }
@@ -117,7 +128,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         report.explained = explained(&placed, &coupled);
     }
     report.seconds.total = start.elapsed().as_secs_f64();
-    report.notes = [scene.notes, damage_notes(&store), report.notes].concat();
+    report.notes = [scene.notes, damage_notes(&store), report.notes, notes].concat();
     if let Some(Swept { dropped, .. }) = swept.filter(|swept| swept.dropped.files > 0) {
         let note = format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes);
         report.notes.push(note);

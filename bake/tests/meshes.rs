@@ -114,7 +114,7 @@ fn subtract(pieces: Vec<Polygon>, mut from: impl FnMut(Polygon, &mut Vec<Polygon
 }
 
 fn part(surfaces: impl IntoIterator<Item = Corners>, double_sided: bool) -> Part {
-    let surfaces = surfaces.into_iter().map(|corners| Surface { corners, material: MaterialId(0) }).collect();
+    let surfaces = surfaces.into_iter().map(|corners| Surface::new(corners, MaterialId(0))).collect();
     let grey = Material { name: String::new(), reflectance: [0.5; 3], emission: [0.0; 3], double_sided };
     Part { name: String::new(), surfaces, materials: vec![grey], element_size: None, local_solver: None }
 }

@@ -2,6 +2,7 @@
 
 use crate::geometry::Corners;
 use crate::ids::MaterialId;
+use glam::{DAffine3, DVec2};
 use serde::{Deserialize, Serialize};
 
 /// What is baked once and placed many times. The importer guarantees: every coordinate is finite, every surface is
@@ -28,6 +29,35 @@ pub struct Surface {
     pub corners: Corners,
     /// Its material.
     pub material: MaterialId,
+    /// Where its corners lie in the author's lightmap (TEXCOORD_1), if there is one; (0, 0) is the upper left corner. A
+    /// triangle's last comes twice. One affine map takes all corners there.
+    pub lightmap: Option<[DVec2; 4]>,
+}
+
+impl Surface {
+    /// A surface without a place in a lightmap.
+    pub fn new(corners: Corners, material: MaterialId) -> Self {
+        Self { corners, material, lightmap: None }
+    }
+
+    /// The same surface seen from behind.
+    pub fn flipped(&self) -> Self {
+        let count = self.corners.as_slice().len();
+        let lightmap = self.lightmap.map(|mut places| {
+            places[..count].reverse();
+            if count == 3 {
+                places[3] = places[2];
+            }
+            places
+        });
+        Self { corners: self.corners.flipped(), lightmap, ..*self }
+    }
+
+    /// The surface after `placement`. A mirror turns the order round, so that corners stay counter-clockwise from the front.
+    pub fn placed(&self, placement: DAffine3) -> Self {
+        let placed = Self { corners: self.corners.map(|corner| placement.transform_point3(corner)), ..*self };
+        if placement.matrix3.determinant() < 0.0 { placed.flipped() } else { placed }
+    }
 }
 
 /// What a surface does with light. Linear RGB, BT.709 primaries.

@@ -1,6 +1,6 @@
 //! Parts made by hand as glTF files: in go nodes, each with a part, its place and extras; out comes a `.glb` file.
 
-use equilux_formats::{Material, MaterialId, Part};
+use equilux_formats::{Material, MaterialId, Part, Surface};
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -117,8 +117,19 @@ impl Model {
         let accessor = json!({ "bufferView": view, "componentType": 5126, "type": "VEC3", "count": count,
             "min": [0, 0, 0], "max": [0, 0, 0] });
         let positions = self.push("accessors", accessor);
+        let mut attributes = json!({ "POSITION": positions });
+        if let Some(places) = places(part, material) {
+            let view = json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": 8 * count });
+            places.iter().for_each(|x| self.binary.extend(x.to_le_bytes()));
+            let view = self.push("bufferViews", view);
+            let accessor =
+                json!({ "bufferView": view, "componentType": 5126, "type": "VEC2", "count": count });
+            let accessor = json!(self.push("accessors", accessor));
+            // glTF wants a first set before the second.
+            (attributes["TEXCOORD_0"], attributes["TEXCOORD_1"]) = (accessor.clone(), accessor);
+        }
         let material = self.push("materials", gltf_material(&part.materials[material.index()]));
-        json!({ "attributes": { "POSITION": positions }, "material": material })
+        json!({ "attributes": attributes, "material": material })
     }
 
     fn push(&mut self, list: &str, value: Value) -> usize {
@@ -126,6 +137,17 @@ impl Model {
         list.push(value);
         list.len() - 1
     }
+}
+
+/// Where the corners of a material's triangles lie in the part's lightmap, two numbers each, if all surfaces do.
+fn places(part: &Part, material: MaterialId) -> Option<Vec<f32>> {
+    let surfaces = part.surfaces.iter().filter(|surface| surface.material == material);
+    let of_surface = |surface: &Surface| {
+        let (places, count) = (surface.lightmap?, surface.corners.as_slice().len());
+        let triangles = (1..count - 1).flat_map(move |i| [places[0], places[i], places[i + 1]]);
+        Some(triangles.flat_map(|place| place.as_vec2().to_array()).collect::<Vec<_>>())
+    };
+    surfaces.map(of_surface).collect::<Option<Vec<_>>>().map(|all| all.concat())
 }
 
 fn gltf_material(material: &Material) -> Value {

@@ -43,13 +43,13 @@ pub fn joined(parts: impl IntoIterator<Item = Part>) -> Part {
 
 /// Add a quad to the part's first material, counter-clockwise from the front.
 pub fn quad(mut part: Part, corners: [DVec3; 4]) -> Part {
-    part.surfaces.push(Surface { corners: Corners::quad(corners), material: MaterialId(0) });
+    part.surfaces.push(Surface::new(Corners::quad(corners), MaterialId(0)));
     part
 }
 
 /// Add a triangle to the part's first material, counter-clockwise from the front.
 pub fn triangle(mut part: Part, corners: [DVec3; 3]) -> Part {
-    part.surfaces.push(Surface { corners: Corners::triangle(corners), material: MaterialId(0) });
+    part.surfaces.push(Surface::new(Corners::triangle(corners), MaterialId(0)));
     part
 }
 

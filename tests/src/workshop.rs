@@ -82,6 +82,7 @@ impl Workshop {
             verify: false,
             warm: false,
             pictures: Pictures::Rounds,
+            lightmaps: None,
             elements: None,
             depfile: None,
             cache_limit: None,

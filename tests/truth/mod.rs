@@ -77,6 +77,7 @@ fn assembled(scene: &Path) -> Table {
         pictures: Pictures::Rounds,
         elements: Some(elements.clone()),
         depfile: None,
+        lightmaps: None,
         cache_limit: None,
     };
     let report = run(&job, &Monitor::default()).unwrap();

@@ -8,7 +8,7 @@ use super::meshes::Mesh;
 use super::notes::Notes;
 use super::repaint::Look;
 use super::surfaces::Dropped;
-use equilux_formats::{Corners, LocalSolver, MaterialId, PunctualLight, Result, Surface};
+use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface};
 use glam::DAffine3;
 
 /// No part has more surfaces: a few kilobytes of nodes that share a mesh could ask for any number.
@@ -68,11 +68,7 @@ impl Draft {
     ) -> Result<()> {
         for (surfaces, paint) in &mesh.primitives {
             let material = self.paints.id(look.on(paint));
-            self.add(
-                document,
-                surfaces.iter().map(|corners| Surface { corners: *corners, material }),
-                placement,
-            )?;
+            self.add(document, surfaces.iter().map(|surface| Surface { material, ..*surface }), placement)?;
         }
         self.dropped += mesh.dropped;
         Ok(())
@@ -89,8 +85,7 @@ impl Draft {
         let materials: Vec<MaterialId> =
             other.paints.0.iter().map(|paint| self.paints.id(look.on(paint))).collect();
         let surfaces = other.surfaces.iter();
-        let surfaces =
-            surfaces.map(|s| Surface { corners: s.corners, material: materials[s.material.index()] });
+        let surfaces = surfaces.map(|s| Surface { material: materials[s.material.index()], ..*s });
         self.add(document, surfaces, placement)?;
         self.lights.extend(other.lights.iter().map(|light| moved(light, placement, look.emission_scale)));
         self.dropped += other.dropped;
@@ -110,16 +105,9 @@ impl Draft {
                 "divide it into several root nodes, or simplify its meshes",
             ));
         }
-        let placed = surfaces.map(|s| Surface { corners: transformed(&s.corners, placement), ..s });
-        self.surfaces.extend(placed);
+        self.surfaces.extend(surfaces.map(|surface| surface.placed(placement)));
         Ok(())
     }
-}
-
-/// `corners` after `placement`. A mirror turns the order round, so that corners stay counter-clockwise from the front.
-pub(super) fn transformed(corners: &Corners, placement: DAffine3) -> Corners {
-    let corners = corners.map(|corner| placement.transform_point3(corner));
-    if placement.matrix3.determinant() < 0.0 { corners.flipped() } else { corners }
 }
 
 /// Paints, each once. Equal ones of different names stay apart: any of them may be repainted by its name, and that must

@@ -5,15 +5,15 @@ use super::materials::{Paint, paint};
 use super::notes::Notes;
 use super::surfaces::{Dropped, surfaces};
 use super::triangles::triangles;
-use equilux_formats::{Corners, Result};
+use equilux_formats::{Result, Surface};
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// A mesh in its own coordinates.
 #[derive(Default)]
 pub(super) struct Mesh {
-    /// Surfaces and paint of each primitive.
-    pub(super) primitives: Vec<(Vec<Corners>, Paint)>,
+    /// Surfaces and paint of each primitive; all name material 0, until a part numbers its paints.
+    pub(super) primitives: Vec<(Vec<Surface>, Paint)>,
     /// What was left out of it.
     pub(super) dropped: Dropped,
 }
@@ -65,7 +65,7 @@ fn read_mesh(document: &Document, source: &gltf::Mesh, notes: &mut Notes) -> Res
             notes.add(&subject, remark);
         }
         mesh.dropped += surfaces.dropped;
-        mesh.primitives.push((surfaces.corners, paint(document, &primitive.material(), notes)?));
+        mesh.primitives.push((surfaces.kept, paint(document, &primitive.material(), notes)?));
     }
     Ok(mesh)
 }

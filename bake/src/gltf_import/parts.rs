@@ -3,7 +3,7 @@
 //! turned otherwise are still the same part. Then the part is moved so that its coordinates start at zero, and parts with
 //! equal contents become one.
 
-use super::drafts::{Draft, Paints, Settings, transformed};
+use super::drafts::{Draft, Paints, Settings};
 use super::materials::{Paint, same_material};
 use super::surfaces::{Dropped, Seen, f64_spacing, has_area};
 use equilux_formats::{Part, PartId, Surface};
@@ -53,7 +53,7 @@ pub(super) struct Settled {
 /// The part made of `draft` after `linear`.
 pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: String) -> Settled {
     let linear = DAffine3::from_mat3(linear);
-    let placed = draft.surfaces.iter().map(|s| Surface { corners: transformed(&s.corners, linear), ..*s });
+    let placed = draft.surfaces.iter().map(|surface| surface.placed(linear));
     let placed: Vec<Surface> = placed.filter(|surface| has_area(&surface.corners, rounding)).collect();
     let start = lowest_corner(&placed);
 
@@ -72,7 +72,7 @@ pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: Str
         } else {
             let old = surface.material.index();
             let material = *renumbered[old].get_or_insert_with(|| paints.id(draft.paints.0[old].clone()));
-            surfaces.push(Surface { corners, material });
+            surfaces.push(Surface { corners, material, ..surface });
         }
     }
     let Settings { element_size, local_solver } = settings;

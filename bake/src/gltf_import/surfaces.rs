@@ -1,9 +1,10 @@
 //! Triangles → clean surfaces: faces without area and repeated faces go, two triangles that are the halves of a
-//! quad become one. In go the triangles of one primitive, out come its surfaces in the same order.
+//! quad become one, unless they lie otherwise in a lightmap. In go the triangles of one primitive, out come its surfaces
+//! in the same order.
 
 use super::triangles::Triangles;
-use equilux_formats::Corners;
-use glam::DVec3;
+use equilux_formats::{Corners, MaterialId, Surface};
+use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::AddAssign;
 
@@ -15,6 +16,9 @@ const BEND: f64 = 1e-4;
 const BLUNTEST: f64 = 0.1;
 /// Steps of f32 that are larger than this share of an edge distort the shape.
 const LOST_DIGITS: f64 = 1e-4;
+/// How far corners may be off their place in a lightmap, in its widths: a tenth of a texel of 4096, or a step of 16-bit
+/// coordinates and a half.
+const LIGHTMAP_STEP: f64 = 2.5e-5;
 /// Triangles looked at across one edge; thousands around one edge would otherwise take quadratic time.
 const NEIGHBOURS: usize = 16;
 
@@ -34,7 +38,8 @@ impl AddAssign for Dropped {
 
 /// The surfaces of a primitive.
 pub(super) struct Surfaces {
-    pub(super) corners: Vec<Corners>,
+    /// All of material 0.
+    pub(super) kept: Vec<Surface>,
     pub(super) dropped: Dropped,
     /// The step of f32 and the shortest edge, metres, where the step is too coarse for the edge.
     pub(super) lost_digits: Option<(f64, f64)>,
@@ -43,12 +48,12 @@ pub(super) struct Surfaces {
 /// Cleans `triangles` and pairs them.
 pub(super) fn surfaces(triangles: &Triangles) -> Surfaces {
     let spacing = if triangles.rounded { f32_spacing } else { f64_spacing };
-    let (kept, dropped) = clean(&triangles.corners, spacing);
+    let (kept, dropped) = clean(triangles, spacing);
     let step = spacing(kept.iter().map(|kept| largest_coordinate(&kept.corners)).fold(0.0, f64::max));
     let shortest =
         kept.iter().flat_map(|kept| edges(&kept.corners)).map(DVec3::length).fold(f64::MAX, f64::min);
     let lost_digits = (!kept.is_empty() && step > LOST_DIGITS * shortest).then_some((step, shortest));
-    Surfaces { corners: pair(&kept, step), dropped, lost_digits }
+    Surfaces { kept: pair(&kept, step), dropped, lost_digits }
 }
 
 /// The distance from `magnitude` to the next f32.
@@ -114,20 +119,23 @@ impl Seen {
 /// A triangle worth keeping.
 struct Kept {
     corners: [DVec3; 3],
+    /// Where they lie in a lightmap.
+    lightmap: Option<[DVec2; 3]>,
     /// Its position in the primitive.
     source: usize,
 }
 
-fn clean(triangles: &[[DVec3; 3]], spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropped) {
+fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropped) {
     let (mut kept, mut dropped, mut seen) = (Vec::new(), Dropped::default(), Seen::default());
-    for (source, &corners) in triangles.iter().enumerate() {
+    for (source, &corners) in triangles.corners.iter().enumerate() {
         let face = Corners::triangle(corners);
         if !has_area(&face, spacing) {
             dropped.without_area += 1;
         } else if !seen.first_time(&face) {
             dropped.duplicates += 1;
         } else {
-            kept.push(Kept { corners, source });
+            let lightmap = triangles.lightmap.as_ref().map(|places| places[source]);
+            kept.push(Kept { corners, lightmap, source });
         }
     }
     (kept, dropped)
@@ -135,14 +143,14 @@ fn clean(triangles: &[[DVec3; 3]], spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropp
 
 /// Pairs the halves of quads. Exporters write the two triangles of a quad one after the other, so there any flat convex
 /// quad is taken for one that was modelled; of what is left, lowest index first, only parallelograms are.
-fn pair(kept: &[Kept], step: f64) -> Vec<Corners> {
-    let mut quads: Vec<Option<[DVec3; 4]>> = vec![None; kept.len()];
+fn pair(kept: &[Kept], step: f64) -> Vec<Surface> {
+    let mut quads: Vec<Option<Quad>> = vec![None; kept.len()];
     let mut paired = vec![false; kept.len()];
     for first in 0..kept.len().saturating_sub(1) {
         let halves = [&kept[first], &kept[first + 1]];
         if halves[0].source.is_multiple_of(2) && halves[1].source == halves[0].source + 1 {
             quads[first] =
-                halves_of(halves).filter(|quad| is_parallelogram(quad, step) || is_convex(quad, step));
+                halves_of(halves).filter(|quad| is_parallelogram(&quad.0, step) || is_convex(&quad.0, step));
             paired[first..first + 2].fill(quads[first].is_some());
         }
     }
@@ -154,32 +162,68 @@ fn pair(kept: &[Kept], step: f64) -> Vec<Corners> {
         let others = neighbours.of_triangle(first).filter(|&other| other > first && !paired[other]);
         let fitting = others.filter_map(|other| {
             let quad = halves_of([&kept[first], &kept[other]])?;
-            is_parallelogram(&quad, step).then_some((other, quad))
+            is_parallelogram(&quad.0, step).then_some((other, quad))
         });
         if let Some((second, quad)) = fitting.min_by_key(|(other, _)| *other) {
             quads[first] = Some(quad);
             (paired[first], paired[second]) = (true, true);
         }
     }
-    let surface = |(at, kept): (usize, &Kept)| match quads[at] {
-        Some(quad) => Some(Corners::quad(quad)),
-        None => (!paired[at]).then(|| Corners::triangle(kept.corners)),
+    let surface = |corners, lightmap| Surface { lightmap, ..Surface::new(corners, MaterialId(0)) };
+    let made = |(at, kept): (usize, &Kept)| match quads[at] {
+        Some((corners, lightmap)) => Some(surface(Corners::quad(corners), lightmap)),
+        None => (!paired[at]).then(|| {
+            let places = kept.lightmap.map(|[a, b, c]| [a, b, c, c]);
+            surface(Corners::triangle(kept.corners), places)
+        }),
     };
-    kept.iter().enumerate().filter_map(surface).collect()
+    kept.iter().enumerate().filter_map(made).collect()
 }
 
+/// Corners, and where they lie in a lightmap.
+type Quad = ([DVec3; 4], Option<[DVec2; 4]>);
+
 /// The quad of which the two triangles are halves, starting at the first one's first corner.
-fn halves_of(halves: [&Kept; 2]) -> Option<[DVec3; 4]> {
+fn halves_of(halves: [&Kept; 2]) -> Option<Quad> {
     let [first, second] = halves.map(|half| half.corners);
     for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
         let (from, to, apex) = (first[i], first[(i + 1) % 3], first[(i + 2) % 3]);
         if second[j] == to && second[(j + 1) % 3] == from {
             let mut quad = [from, second[(j + 2) % 3], to, apex];
+            let lightmap = match halves.map(|half| half.lightmap) {
+                [Some(first), Some(second)] => Some(joined(&quad, first, i, second, j)?),
+                [None, None] => None,
+                _ => return None,
+            };
             quad.rotate_left([0, 3, 2][i]);
-            return Some(quad);
+            let turned = |mut places: [DVec2; 4]| {
+                places.rotate_left([0, 3, 2][i]);
+                places
+            };
+            return Some((quad, lightmap.map(turned)));
         }
     }
     None
+}
+
+/// Where the corners of `quad` lie in a lightmap, if the affine map of the first half, from whose edge `i` it was made,
+/// takes those of the second, from whose edge `j` it was made, where they are.
+fn joined(
+    quad: &[DVec3; 4],
+    first: [DVec2; 3],
+    i: usize,
+    second: [DVec2; 3],
+    j: usize,
+) -> Option<[DVec2; 4]> {
+    let places = [first[i], second[(j + 2) % 3], first[(i + 1) % 3], first[(i + 2) % 3]];
+    let [from, to, apex] = [quad[0], quad[2], quad[3]];
+    // Barycentric coordinates of the second half's own corner in the first half.
+    let normal = (to - from).cross(apex - from);
+    let share = |p: DVec3, q: DVec3| (p - quad[1]).cross(q - quad[1]).dot(normal) / normal.length_squared();
+    let mapped = places[0] * share(to, apex) + places[2] * share(apex, from) + places[3] * share(from, to);
+    let near = |p: DVec2, q: DVec2| (p - q).abs().max_element() <= LIGHTMAP_STEP;
+    let shared = near(second[j], places[2]) && near(second[(j + 1) % 3], places[0]);
+    (shared && near(mapped, places[1])).then_some(places)
 }
 
 /// How far corners may be off beside a diagonal of this length.
@@ -240,7 +284,7 @@ mod tests {
 
     fn of(corners: Vec<[[f64; 3]; 3]>) -> Surfaces {
         let corners = corners.into_iter().map(|triangle| triangle.map(DVec3::from_array)).collect();
-        surfaces(&Triangles { corners, rounded: true })
+        surfaces(&Triangles { corners, lightmap: None, rounded: true })
     }
 
     const A: [f64; 3] = [0.0, 0.0, 0.0];
@@ -259,14 +303,14 @@ mod tests {
         for halves in [[[A, B, C], [A, C, D]], [[A, B, D], [B, C, D]]] {
             for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
                 let [first, second] = [rotated(halves[0], i), rotated(halves[1], j)];
-                let quads = of(vec![first, second]).corners;
+                let quads = of(vec![first, second]).kept;
                 let mut outline = [A, B, C, D];
                 let start =
                     outline.iter().position(|&corner| corner == first[0]).expect("a corner of the outline");
                 outline.rotate_left(start);
                 assert_eq!(
                     quads,
-                    [Corners::quad(outline.map(DVec3::from_array))],
+                    [Surface::new(Corners::quad(outline.map(DVec3::from_array)), MaterialId(0))],
                     "{first:?} with {second:?}"
                 );
             }
@@ -284,7 +328,7 @@ mod tests {
             ("turned over", vec![[A, B, C], [A, D, C]], 2),
             ("neighbours, not written as a pair", vec![far, [A, B, C], [A, C, askew]], 3),
         ] {
-            assert_eq!(of(triangles).corners.len(), count, "{case}");
+            assert_eq!(of(triangles).kept.len(), count, "{case}");
         }
     }
 
@@ -298,10 +342,30 @@ mod tests {
         let lone = [[9.0, 0.0, 0.0], [10.0, 0.0, 0.0], [9.0, 3.0, 0.0]];
         let ([a, b], [c, d], [e, f]) = (square(0.0), square(1.0), square(2.0));
         for triangles in [vec![lone, a, b, c, d, e, f], vec![a, c, e, lone, f, d, b]] {
-            let surfaces = of(triangles).corners;
-            let area: f64 = surfaces.iter().map(|corners| corners.double_area_vector().length() / 2.0).sum();
+            let surfaces = of(triangles).kept;
+            let area: f64 = surfaces.iter().map(|s| s.corners.double_area_vector().length() / 2.0).sum();
             assert!(surfaces.len() < 7, "none of seven triangles found its partner");
             assert!((area - 4.5).abs() < 1e-12, "area {area}, expected 3 squares and a triangle of 1.5");
+        }
+    }
+
+    /// One affine map, another turn of the second half, and another place of it.
+    #[test]
+    fn halves_that_lie_otherwise_in_a_lightmap_stay_triangles() {
+        let place = |[x, y, _]: [f64; 3]| DVec2::new(0.2 + 0.1 * x, 0.3 + 0.05 * y - 0.02 * x);
+        let [first, second] = [[A, B, C].map(place), [A, C, D].map(place)];
+        for (case, second, count) in [
+            ("one map", second, 1),
+            ("the far corner elsewhere", [second[0], second[1], second[2] + 0.01], 2),
+            ("all elsewhere", second.map(|place| place + 0.3), 2),
+        ] {
+            let corners = [[A, B, C], [A, C, D]].map(|triangle| triangle.map(DVec3::from_array)).to_vec();
+            let triangles = Triangles { corners, lightmap: Some(vec![first, second]), rounded: true };
+            let kept = surfaces(&triangles).kept;
+            assert_eq!(kept.len(), count, "{case}");
+            let found = kept[0].lightmap.expect("a place in the lightmap");
+            let expected = if count == 1 { [A, B, C, D].map(place) } else { [A, B, C, C].map(place) };
+            assert_eq!(found, expected, "{case}");
         }
     }
 
@@ -309,7 +373,7 @@ mod tests {
     fn flat_and_repeated_faces_are_dropped_and_counted() {
         let tenths = [[0.1_f32, 0.2, 0.3], [0.2, 0.4, 0.6], [0.7, 1.4, 2.1]].map(|p| p.map(f64::from));
         let surfaces = of(vec![[A, B, C], [A, A, B], tenths, [B, C, A], [A, C, B]]);
-        assert_eq!(surfaces.corners.len(), 2, "a face and the same turned over");
+        assert_eq!(surfaces.kept.len(), 2, "a face and the same turned over");
         assert_eq!(surfaces.dropped, Dropped { without_area: 2, duplicates: 1 });
     }
 

@@ -4,7 +4,7 @@
 use super::accessors::{check_type, components};
 use super::document::Document;
 use equilux_formats::Result;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gltf::Primitive;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::Mode;
@@ -13,6 +13,8 @@ use gltf::mesh::Mode;
 pub(super) struct Triangles {
     /// Corners, counter-clockwise seen from the front, in mesh coordinates.
     pub(super) corners: Vec<[DVec3; 3]>,
+    /// Where the corners lie in a lightmap, if the author has one.
+    pub(super) lightmap: Option<Vec<[DVec2; 3]>>,
     /// Whether positions were rounded to f32 on their way in.
     pub(super) rounded: bool,
 }
@@ -33,11 +35,14 @@ pub(super) fn triangles(document: &Document, primitive: &Primitive, mesh: &str) 
             "export the file again, it is damaged",
         ));
     }
-    let corners = corners_of(order.len())
-        .map(|corners| corners.map(|corner| order[corner]))
+    let lightmap = lightmap(document, primitive, positions.len(), mesh)?;
+    let vertices_of = || corners_of(order.len()).map(|corners| corners.map(|corner| order[corner]));
+    let lightmap =
+        lightmap.map(|places| vertices_of().map(|vertices| vertices.map(|vertex| places[vertex])).collect());
+    let corners = vertices_of()
         .map(|vertices| finite(document, &accessor, mesh, &positions, vertices))
         .collect::<Result<_>>()?;
-    Ok(Some(Triangles { corners, rounded: accessor.data_type() == DataType::F32 }))
+    Ok(Some(Triangles { corners, lightmap, rounded: accessor.data_type() == DataType::F32 }))
 }
 
 type Assembly = fn(usize) -> Box<dyn Iterator<Item = [usize; 3]>>;
@@ -59,6 +64,28 @@ fn positions(document: &Document, accessor: &gltf::Accessor, mesh: &str) -> Resu
     let types = [DataType::F32, DataType::I8, DataType::U8, DataType::I16, DataType::U16];
     check_type(document, accessor, &what, Dimensions::Vec3, &types)?;
     Ok(components(document, accessor, &what)?.chunks_exact(3).map(DVec3::from_slice).collect())
+}
+
+/// TEXCOORD_1, if all of it are numbers.
+fn lightmap(
+    document: &Document,
+    primitive: &Primitive,
+    vertices: usize,
+    mesh: &str,
+) -> Result<Option<Vec<DVec2>>> {
+    let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(1)) else { return Ok(None) };
+    let what = format!("TEXCOORD_1 of mesh {mesh}");
+    check_type(document, &accessor, &what, Dimensions::Vec2, &[DataType::F32, DataType::U8, DataType::U16])?;
+    if accessor.count() != vertices {
+        return Err(document.error(
+            format!("{what} in accessor {} with {} elements", accessor.index(), accessor.count()),
+            format!("{vertices}, one for each position"),
+            "export the file again, it contradicts itself",
+        ));
+    }
+    let places: Vec<DVec2> =
+        components(document, &accessor, &what)?.chunks_exact(2).map(DVec2::from_slice).collect();
+    Ok(places.iter().all(|place| place.is_finite()).then_some(places))
 }
 
 fn indexed(

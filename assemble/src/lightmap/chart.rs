@@ -1,0 +1,131 @@
+//! Charts: connected sides of one material that can be laid out in a plane together. In goes a part; out come its
+//! charts, each side in exactly one of them.
+//!
+//! A chart grows from its largest side over smooth contacts, as long as sides face the chart's direction to within
+//! [`SMOOTH`], so that no texel is stretched by more than 1/cos 30° = 1.15. So it is a height field over a plane, unless
+//! it runs around and covers itself; then each of its flat pieces is a chart of its own.
+
+use super::contacts::{SMOOTH, smooth_contacts};
+use super::overlap::any_overlap;
+use super::side::{Side, sides};
+use equilux_bake::planes;
+use equilux_formats::{Face, MaterialId, Part};
+use glam::DVec3;
+
+/// Sides that share a piece of the lightmap.
+#[derive(Debug, Clone)]
+pub struct Chart {
+    /// Unit vector from which each place of the chart is seen at most once.
+    pub direction: DVec3,
+    /// The material of all.
+    pub material: MaterialId,
+    /// The sides.
+    pub sides: Vec<Side>,
+    /// Which of them lie in one plane: a number for each side, counted from 0 without gaps.
+    pub planes: Vec<usize>,
+}
+
+impl Chart {
+    /// How many planes it lies in.
+    pub fn plane_count(&self) -> usize {
+        self.planes.iter().max().map_or(0, |&last| last + 1)
+    }
+
+    /// The largest of the sides in a plane: its plane is known best.
+    pub fn largest_in(&self, plane: usize) -> &Side {
+        let sides = self.sides.iter().zip(&self.planes).filter(|(_, of)| **of == plane);
+        sides.map(|(side, _)| side).max_by(|a, b| a.area.total_cmp(&b.area)).expect("a plane has a side")
+    }
+}
+
+/// The charts of a part.
+pub fn charts(part: &Part) -> Vec<Chart> {
+    let growth = Growth::new(sides(part));
+    let mut charts = Vec::new();
+    for members in growth.groups(&growth.all(), |seed, side| growth.faces(seed, side)) {
+        if growth.covers_itself(&members) {
+            let flat = growth.groups(&members, |seed, side| growth.plane[seed] == growth.plane[side]);
+            charts.extend(flat.iter().map(|members| growth.chart(members)));
+        } else {
+            charts.push(growth.chart(&members));
+        }
+    }
+    charts
+}
+
+struct Growth {
+    sides: Vec<Side>,
+    plane: Vec<u32>,
+    neighbours: Vec<Vec<usize>>,
+}
+
+impl Growth {
+    fn new(sides: Vec<Side>) -> Self {
+        let mut neighbours = vec![Vec::new(); sides.len()];
+        for contact in smooth_contacts(&sides) {
+            let [a, b] = contact.sides;
+            if sides[a].material == sides[b].material {
+                neighbours[a].push(b);
+                neighbours[b].push(a);
+            }
+        }
+        let faces: Vec<Face> = sides.iter().map(|s| Face::new(s.corners.as_slice().to_vec())).collect();
+        Self { plane: planes::group(&faces), sides, neighbours }
+    }
+
+    fn all(&self) -> Vec<usize> {
+        (0..self.sides.len()).collect()
+    }
+
+    fn faces(&self, seed: usize, side: usize) -> bool {
+        self.sides[seed].normal.dot(self.sides[side].normal) >= SMOOTH.cos()
+    }
+
+    /// `members` in connected groups, each grown from its largest side over those that `fit` it.
+    fn groups(&self, members: &[usize], fit: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+        let mut free = vec![false; self.sides.len()];
+        members.iter().for_each(|&side| free[side] = true);
+        let mut seeds = members.to_vec();
+        seeds.sort_by(|&a, &b| self.sides[b].area.total_cmp(&self.sides[a].area).then(a.cmp(&b)));
+        let mut groups = Vec::new();
+        for seed in seeds {
+            if !std::mem::take(&mut free[seed]) {
+                continue;
+            }
+            let (mut group, mut next) = (vec![seed], 0);
+            while next < group.len() {
+                for &side in &self.neighbours[group[next]] {
+                    if free[side] && fit(seed, side) {
+                        free[side] = false;
+                        group.push(side);
+                    }
+                }
+                next += 1;
+            }
+            groups.push(group);
+        }
+        groups
+    }
+
+    /// Whether two places of a bent group lie behind one another. Places of a flat one never do: where its sides
+    /// overlap they are the same place with the same light.
+    fn covers_itself(&self, members: &[usize]) -> bool {
+        let direction = self.sides[members[0]].normal;
+        members.iter().any(|&side| self.plane[side] != self.plane[members[0]])
+            && any_overlap(members.iter().map(|&side| self.sides[side].corners), direction)
+    }
+
+    fn chart(&self, members: &[usize]) -> Chart {
+        let first = self.sides[members[0]];
+        let mut planes: Vec<u32> = members.iter().map(|&side| self.plane[side]).collect();
+        planes.sort_unstable();
+        planes.dedup();
+        let number = |&side: &usize| planes.binary_search(&self.plane[side]).expect("it was put there");
+        Chart {
+            direction: first.normal,
+            material: first.material,
+            sides: members.iter().map(|&side| self.sides[side]).collect(),
+            planes: members.iter().map(number).collect(),
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Light for texels around a chart, so that lookups near its edge find nothing dark: each takes the mean of those of
+//! its neighbours that have light. Only texels of the chart's own rectangle give and take.
+
+use super::grid::MARGIN;
+use equilux_formats::Rgb;
+
+/// Fills what is empty within [`MARGIN`] texels of what is not. `values`: one a texel, row after row of `width`.
+pub fn dilate(values: &mut [Option<Rgb>], width: u32) {
+    for _ in 0..MARGIN {
+        let before = values.to_vec();
+        for (index, value) in values.iter_mut().enumerate().filter(|(_, value)| value.is_none()) {
+            *value = mean(neighbours(index, width as usize, before.len()).filter_map(|i| before[i]));
+        }
+    }
+}
+
+fn neighbours(index: usize, width: usize, count: usize) -> impl Iterator<Item = usize> {
+    let (column, row) = (index % width, index / width);
+    let rows = row.saturating_sub(1)..(row + 2).min(count / width);
+    let columns = move || column.saturating_sub(1)..(column + 2).min(width);
+    rows.flat_map(move |row| columns().map(move |column| row * width + column))
+}
+
+fn mean(values: impl Iterator<Item = Rgb>) -> Option<Rgb> {
+    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    for value in values {
+        sum.iter_mut().zip(value).for_each(|(sum, v)| *sum += v);
+        count += 1.0;
+    }
+    (count > 0.0).then(|| sum.map(|sum| sum / count))
+}

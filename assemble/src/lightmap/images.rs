@@ -1,0 +1,142 @@
+//! A lightmap as images: half-float EXR for engines, 8-bit PNG for people and for models.
+
+use super::atlas::Tile;
+use super::{Holds, Lightmap};
+use crate::canvas::srgb;
+use crate::exposure::Exposure;
+use equilux_formats::{MaterialId, Rgb};
+use exr::prelude::{
+    Compression, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Vec2, WritableImage,
+    f16,
+};
+use image::RgbImage;
+use image::codecs::png::PngEncoder;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::io::{self, Cursor};
+
+/// What the numbers in a lightmap mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Units {
+    /// Irradiance H, W/m². three.js divides by π itself.
+    Irradiance,
+    /// H/π, W/(m²·sr), what a white surface shows: Bevy multiplies a lightmap by the base colour and `lightmap_exposure`,
+    /// and takes the product for luminance, cd/m². With an exposure of 683 a watt of light is one of green, 683 lm.
+    Bevy,
+}
+
+impl Units {
+    /// The factor on irradiance.
+    pub fn factor(self) -> f64 {
+        match self {
+            Self::Irradiance => 1.0,
+            Self::Bevy => 1.0 / PI,
+        }
+    }
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Irradiance => {
+                "irradiance, W/m2, linear RGB (BT.709), neither divided by pi nor multiplied by reflectance"
+            }
+            Self::Bevy => {
+                "irradiance / pi, W/(m2 sr), linear RGB (BT.709), not multiplied by reflectance; times lightmap_exposure it is cd/m2"
+            }
+        }
+    }
+}
+
+/// The brightest light keeps its last digits, and a thousandth of it still has ten bits, between these.
+const HALF_RANGE: std::ops::RangeInclusive<f64> = 0.0625..=65504.0;
+
+/// The factor on a lightmap's numbers whose largest is `most` so that half floats hold them: 1 wherever that will do,
+/// else the power of two that brings it between 1024 and 2048.
+pub fn half_scale(most: f64) -> f64 {
+    let fits = most == 0.0 || HALF_RANGE.contains(&most);
+    if fits { 1.0 } else { 2f64.powi(10 - most.log2().floor() as i32) }
+}
+
+/// One image of the lightmap: for each texel what `value` makes of its tile and place in it, else `empty`. Rectangles of
+/// an author's layout may overlap: what holds some of a chart goes before what is only near one.
+fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(usize, usize) -> T) -> Vec<T> {
+    let [width, height] = lightmap.atlas.images[image].map(|side| side as usize);
+    let mut texels = vec![empty; width * height];
+    let here = |(_, tile): &(usize, &Tile)| tile.spot.image == image;
+    for held in [Holds::Margin, Holds::Chart] {
+        for (number, tile) in lightmap.tiles.iter().enumerate().filter(here) {
+            let [left, top] = tile.spot.at.map(|at| at as usize);
+            let columns = tile.size[0] as usize;
+            let holds = lightmap.holds[number].iter().enumerate();
+            for (index, _) in holds.filter(|(_, holds)| **holds == held) {
+                let (row, column) = (index / columns, index % columns);
+                texels[(top + row) * width + left + column] = value(number, index);
+            }
+        }
+    }
+    texels
+}
+
+/// The EXR file of an image: irradiance times `factor`, as half floats, compressed without loss.
+pub fn exr(lightmap: &Lightmap, number: usize, factor: f64) -> io::Result<Vec<u8>> {
+    let texels = image(lightmap, number, [f16::ZERO; 3], |tile, texel| {
+        lightmap.irradiance[tile][texel].map(|h| f16::from_f64(h * factor))
+    });
+    let [width, height] = lightmap.atlas.images[number].map(|side| side as usize);
+    let channels = SpecificChannels::rgb(|Vec2(x, y)| {
+        let [r, g, b] = texels[y * width + x];
+        (r, g, b)
+    });
+    let encoding = Encoding {
+        compression: Compression::ZIP16,
+        line_order: LineOrder::Increasing,
+        ..Encoding::SMALL_LOSSLESS
+    };
+    let layer = Layer::new((width, height), LayerAttributes::default(), encoding, channels);
+    let mut file = Cursor::new(Vec::new());
+    Image::from_layer(layer).write().to_buffered(&mut file).map_err(io::Error::other)?;
+    Ok(file.into_inner())
+}
+
+/// The PNG file of an image: irradiance as the pictures show a white surface.
+pub fn png(lightmap: &Lightmap, number: usize, exposure: Exposure) -> io::Result<Vec<u8>> {
+    encode(lightmap, number, |tile, texel| exposure.shown(lightmap.irradiance[tile][texel]))
+}
+
+/// The PNG file of an image: radiosity as the pictures show it.
+pub fn shown_png(lightmap: &Lightmap, number: usize, exposure: Exposure) -> io::Result<Vec<u8>> {
+    encode(lightmap, number, |tile, texel| exposure.shown(lightmap.radiosity(tile, texel)))
+}
+
+/// The brightest radiosity of each material of each instance, W/m².
+pub type Peaks = BTreeMap<(usize, MaterialId), f64>;
+
+/// See [`Peaks`].
+pub fn peaks(lightmap: &Lightmap) -> Peaks {
+    let mut peaks = Peaks::new();
+    for (number, tile) in lightmap.tiles.iter().enumerate() {
+        let texels =
+            (0..lightmap.irradiance[number].len()).flat_map(|texel| lightmap.radiosity(number, texel));
+        let peak = peaks.entry((tile.instance, lightmap.material_of(tile).0)).or_insert(0.0);
+        *peak = texels.fold(*peak, f64::max);
+    }
+    peaks
+}
+
+/// The PNG file of an image: radiosity as a share of its peak, so that eight bits keep dim walls beside bright lamps.
+pub fn relative_png(lightmap: &Lightmap, number: usize, peaks: &Peaks) -> io::Result<Vec<u8>> {
+    let of_tile: Vec<f64> =
+        lightmap.tiles.iter().map(|tile| peaks[&(tile.instance, lightmap.material_of(tile).0)]).collect();
+    let share = |b: f64, peak: f64| if peak > 0.0 { b / peak } else { 0.0 };
+    encode(lightmap, number, |tile, texel| lightmap.radiosity(tile, texel).map(|b| share(b, of_tile[tile])))
+}
+
+/// The PNG file of an image of linear RGB, 0..1, in sRGB.
+fn encode(lightmap: &Lightmap, number: usize, colour: impl Fn(usize, usize) -> Rgb) -> io::Result<Vec<u8>> {
+    let texels = image(lightmap, number, [0; 3], |tile, texel| colour(tile, texel).map(srgb));
+    let [width, height] = lightmap.atlas.images[number];
+    let picture = RgbImage::from_raw(width, height, texels.into_flattened()).expect("one colour a texel");
+    let mut file = Vec::new();
+    picture.write_with_encoder(PngEncoder::new(&mut file)).map_err(io::Error::other)?;
+    Ok(file)
+}

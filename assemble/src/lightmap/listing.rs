@@ -1,0 +1,62 @@
+//! What lies where in a lightmap, for programs: `lightmaps.json`.
+
+use super::pack::Spot;
+use super::{Lightmap, Units};
+use serde_json::{Value, json};
+
+/// A file with an image of the lightmap.
+pub struct File {
+    /// Its name.
+    pub name: String,
+    /// Its contents.
+    pub bytes: Vec<u8>,
+}
+
+/// The list. `images`: for each image of the lightmap its EXR and its PNG. The EXRs' numbers are those in `units` times
+/// `scale`.
+pub fn listing(lightmap: &Lightmap, images: &[[File; 2]], units: Units, scale: f64) -> Value {
+    let instances = lightmap.scene.instances.iter().enumerate();
+    json!({
+        "units": units.name(),
+        "scale": scale,
+        "texel_size": lightmap.atlas.texel_size,
+        "uv": "TEXCOORD_1 of lightmapped.glb (the author's own where it could be kept), times scale, plus offset; (0, 0) is the upper left corner of the image",
+        "images": lightmap.atlas.images.iter().zip(images).map(|([width, height], [exr, png])| json!({
+            "file": exr.name, "width": width, "height": height, "blake3": hash(exr),
+            "preview": png.name, "preview_blake3": hash(png),
+        })).collect::<Vec<_>>(),
+        "nodes": instances.map(|(number, instance)| json!({
+            "name": instance.name,
+            "rectangles": rectangles(lightmap, number).into_iter().map(|Rectangle { image, offset, scale }| json!({
+                "image": images[image][0].name, "offset": offset, "scale": scale,
+            })).collect::<Vec<_>>(),
+        })).collect::<Vec<_>>(),
+    })
+}
+
+fn hash(file: &File) -> String {
+    blake3::hash(&file.bytes).to_hex().to_string()
+}
+
+/// Where texture coordinates of a sheet lie in an image: times `scale`, plus `offset`.
+pub struct Rectangle {
+    /// The image.
+    pub image: usize,
+    /// In shares of the image.
+    pub offset: [f64; 2],
+    /// In shares of the image.
+    pub scale: [f64; 2],
+}
+
+/// The rectangles of an instance's sheets.
+pub fn rectangles(lightmap: &Lightmap, instance: usize) -> Vec<Rectangle> {
+    let (layout, own) = (lightmap.atlas.layout_of(instance), &lightmap.atlas.instances[instance]);
+    let rectangle = |(sheet, spot): (&[u32; 2], &Spot)| {
+        let whole = lightmap.atlas.images[spot.image];
+        let share = |of: [u32; 2]| [0, 1].map(|side| f64::from(of[side]) / f64::from(whole[side]));
+        let (offset, scale) =
+            (spot.at.map(|at| at + layout.border), sheet.map(|side| side - 2 * layout.border));
+        Rectangle { image: spot.image, offset: share(offset), scale: share(scale) }
+    };
+    layout.sheets.iter().zip(&own.sheets).map(rectangle).collect()
+}

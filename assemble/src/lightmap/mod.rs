@@ -1,0 +1,159 @@
+//! Lightmaps: the light of a scene as images that game engines put on its surfaces.
+//!
+//! In go a scene's parts and instances, and a function that gives texels their irradiance; out come images, a model that
+//! carries them, and a list of what lies where in them.
+//!
+//!     parts → sides → charts → grids → atlas        once for each part and scale
+//!     atlas × instances → texels → irradiance → light around charts → seams → images, model, list
+
+pub mod atlas;
+mod authored;
+mod bounds;
+pub mod chart;
+pub mod contacts;
+mod dilate;
+pub mod estimate;
+pub mod grid;
+mod images;
+mod listing;
+mod model;
+mod nearest;
+mod overlap;
+pub mod pack;
+pub mod patch;
+mod seams;
+pub mod side;
+pub mod texels;
+mod write;
+
+pub use images::Units;
+pub use nearest::Nearest;
+pub use write::{Saved, write};
+
+use atlas::{Atlas, Tile};
+use equilux_bake::monitor::Monitor;
+use equilux_formats::{Material, MaterialId, Rgb, Scene};
+use rayon::prelude::*;
+use std::ops::Range;
+use texels::Texels;
+
+/// What a person chooses about lightmaps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wanted {
+    /// The size of texels, metres; none to let the scene decide.
+    pub texel_size: Option<f64>,
+    /// What the numbers in the images mean.
+    pub units: Units,
+}
+
+/// A scene with light on its surfaces.
+pub struct Lightmap<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// What lies where.
+    pub atlas: &'a Atlas,
+    /// The charts of all instances.
+    pub tiles: Vec<Tile>,
+    /// Irradiance, W/m², linear RGB, for each tile one a texel of its rectangle, row after row.
+    pub irradiance: Vec<Vec<Rgb>>,
+    /// For each of these what of the chart it holds.
+    holds: Vec<Vec<Holds>>,
+    /// What each instance's materials do with light.
+    materials: Vec<Vec<Material>>,
+}
+
+/// What of its chart a texel holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Holds {
+    /// Nothing, and it is not near.
+    Nothing,
+    /// Light for lookups beside the chart.
+    Margin,
+    /// Some of the chart.
+    Chart,
+}
+
+/// About so many texels are worked on at once by a thread.
+const BAND: u32 = 16384;
+
+impl<'a> Lightmap<'a> {
+    /// The lightmap of `scene`. `irradiance` gives texels theirs, W/m² of linear RGB, not divided by π, in their order.
+    pub fn new(
+        scene: &'a Scene,
+        atlas: &'a Atlas,
+        irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
+        monitor: &Monitor,
+    ) -> Self {
+        let tiles = atlas.tiles();
+        let bands: Vec<(usize, Range<u32>)> = tiles
+            .iter()
+            .enumerate()
+            .flat_map(|(number, tile)| bands(tile.size).map(move |rows| (number, rows)))
+            .collect();
+        monitor.begin("lightmap", bands.len());
+        let lit: Vec<Vec<([u32; 2], Rgb)>> = bands
+            .par_iter()
+            .map(|(number, rows)| {
+                let tile = &tiles[*number];
+                let (chart, grid) = atlas.chart_of(tile);
+                let placement = scene.instances[tile.instance].placement;
+                let texels = Texels::new(chart, grid, rows.clone(), tile.instance, placement);
+                let light = irradiance(&texels);
+                assert_eq!(light.len(), texels.texels.len(), "one value a texel");
+                assert!(
+                    light.iter().flatten().all(|h| h.is_finite()),
+                    "irradiance must be a number: {light:?}"
+                );
+                monitor.advance(1);
+                texels.texels.iter().map(|texel| texel.at).zip(light).collect()
+            })
+            .collect();
+        let mut values: Vec<Vec<Option<Rgb>>> =
+            tiles.iter().map(|tile| vec![None; (tile.size[0] * tile.size[1]) as usize]).collect();
+        for ((number, _), lit) in bands.iter().zip(lit) {
+            let width = tiles[*number].size[0];
+            lit.into_iter()
+                .for_each(|([x, y], light)| values[*number][(y * width + x) as usize] = Some(light));
+        }
+        let mut holds: Vec<Vec<Holds>> =
+            values.iter().map(|values| values.iter().map(held).collect()).collect();
+        values.par_iter_mut().zip(&tiles).for_each(|(values, tile)| dilate::dilate(values, tile.size[0]));
+        for (holds, values) in holds.iter_mut().zip(&values) {
+            let reached = holds.iter_mut().zip(values).filter(|(_, value)| value.is_some());
+            reached.for_each(|(holds, _)| *holds = Holds::Margin.max(*holds));
+        }
+        let filled = |values: Vec<Option<Rgb>>| values.into_iter().map(Option::unwrap_or_default).collect();
+        let mut irradiance: Vec<Vec<Rgb>> = values.into_iter().map(filled).collect();
+        seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
+        let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
+        Self { scene, atlas, materials: materials.collect(), tiles, irradiance, holds }
+    }
+
+    /// The material of a tile.
+    pub fn material_of(&self, tile: &Tile) -> (MaterialId, &Material) {
+        let id = self.atlas.chart_of(tile).0.material;
+        (id, &self.materials[tile.instance][id.index()])
+    }
+
+    /// What the materials of an instance do with light.
+    pub fn materials_of(&self, instance: usize) -> &[Material] {
+        &self.materials[instance]
+    }
+
+    /// Radiosity B = E + ρH of a texel of a tile, W/m².
+    pub fn radiosity(&self, tile: usize, texel: usize) -> Rgb {
+        let Material { reflectance, emission, .. } = self.material_of(&self.tiles[tile]).1;
+        let h = self.irradiance[tile][texel];
+        std::array::from_fn(|c| emission[c] + reflectance[c] * h[c])
+    }
+}
+
+fn held(value: &Option<Rgb>) -> Holds {
+    if value.is_some() { Holds::Chart } else { Holds::Nothing }
+}
+
+/// The rows of a rectangle in pieces of which each fits in memory with its footprints.
+fn bands([width, height]: [u32; 2]) -> impl Iterator<Item = Range<u32>> {
+    let rows = (BAND / width).max(1);
+    (0..height.div_ceil(rows)).map(move |band| band * rows..(band * rows + rows).min(height))
+}

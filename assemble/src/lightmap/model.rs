@@ -1,0 +1,212 @@
+//! The scene as a model that carries its lightmap. In go a lightmap and its images; out comes a binary glTF 2.0 file: a
+//! node an instance, whose mesh shares its vertices with the other instances of its part and scale.
+//!
+//! A node has materials of its own, since light is its own: the image is their texture, and KHR_texture_transform takes
+//! the texture coordinates that instances share to the node's place in it. glTF wants TEXCOORD_0 before TEXCOORD_1, so
+//! both are the same.
+
+use super::Lightmap;
+use super::images::Peaks;
+use super::listing::rectangles;
+use equilux_formats::{MaterialId, Rgb};
+use glam::{DVec3, UVec2, Vec2, Vec3};
+use gltf::binary::{Glb, Header};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::io;
+
+/// A vertex: POSITION and TEXCOORD_1, three and two f32.
+const VERTEX_BYTES: usize = 20;
+const FLOAT: u32 = 5126;
+const ARRAY_BUFFER: u32 = 34962;
+
+/// What the model's textures hold.
+pub enum Look<'a> {
+    /// The share of the peak: as emission, in units of radiance. Base colours are kept.
+    Emissive(&'a Peaks),
+    /// What pictures show: as colours of unlit surfaces.
+    Unlit,
+}
+
+/// The file's bytes. `images`: PNG files.
+pub fn model(lightmap: &Lightmap, images: &[Vec<u8>], look: &Look) -> io::Result<Vec<u8>> {
+    let mut document = Document::default();
+    let meshes: Vec<Vec<Primitive>> =
+        (0..lightmap.atlas.layouts.len()).map(|layout| document.add_vertices(lightmap, layout)).collect();
+    for (number, instance) in lightmap.scene.instances.iter().enumerate() {
+        let primitives = &meshes[lightmap.atlas.instances[number].layout];
+        if !primitives.is_empty() {
+            let mesh = document.add_mesh(lightmap, number, primitives, look);
+            document.nodes.push(json!({
+                "name": instance.name, "mesh": mesh, "matrix": matrix(instance.placement),
+            }));
+        }
+    }
+    let bin = document.add_images(images);
+    let glb = Glb {
+        header: Header { magic: *b"glTF", version: 2, length: 0 },
+        json: document.json(bin.len(), images.len(), look).to_string().into_bytes().into(),
+        bin: Some(bin.into()),
+    };
+    let mut file = Vec::new();
+    glb.to_writer(&mut file).map_err(io::Error::other)?;
+    Ok(file)
+}
+
+fn matrix(placement: glam::DAffine3) -> [f64; 16] {
+    glam::DMat4::from(placement).to_cols_array()
+}
+
+/// Triangles of one material on one sheet.
+struct Primitive {
+    material: MaterialId,
+    sheet: usize,
+    positions: usize,
+    coordinates: usize,
+}
+
+#[derive(Default)]
+struct Document {
+    vertices: Vec<u8>,
+    accessors: Vec<Value>,
+    views: Vec<Value>,
+    nodes: Vec<Value>,
+    meshes: Vec<Value>,
+    materials: Vec<Value>,
+}
+
+impl Document {
+    /// The triangles of a layout.
+    fn add_vertices(&mut self, lightmap: &Lightmap, layout: usize) -> Vec<Primitive> {
+        let layout = &lightmap.atlas.layouts[layout];
+        let mut groups: BTreeMap<(MaterialId, usize), Vec<(Vec3, Vec2)>> = BTreeMap::new();
+        for ((chart, grid), spot) in layout.charts.iter().zip(&layout.grids).zip(&layout.spots) {
+            let group = groups.entry((chart.material, spot.image)).or_default();
+            let size = UVec2::from(layout.sheets[spot.image]) - 2 * layout.border;
+            let first = UVec2::from(spot.at).as_dvec2() - f64::from(layout.border);
+            for (side, &plane) in chart.sides.iter().zip(&chart.planes) {
+                let coordinates = |p: DVec3| ((grid.texel_of(plane, p) + first) / size.as_dvec2()).as_vec2();
+                group.extend(triangles(side.corners.as_slice()).map(|p| (p.as_vec3(), coordinates(p))));
+            }
+        }
+        let primitive = |((material, sheet), vertices): ((MaterialId, usize), Vec<(Vec3, Vec2)>)| {
+            let [positions, coordinates] = self.add_accessors(&vertices);
+            Primitive { material, sheet, positions, coordinates }
+        };
+        groups.into_iter().map(primitive).collect()
+    }
+
+    fn add_accessors(&mut self, vertices: &[(Vec3, Vec2)]) -> [usize; 2] {
+        let (start, first) = (self.vertices.len(), self.accessors.len());
+        let bound = |start: Vec3, pick: fn(Vec3, Vec3) -> Vec3| {
+            vertices.iter().map(|v| v.0).fold(start, pick).to_array()
+        };
+        self.accessors.push(json!({
+            "bufferView": 0, "byteOffset": start, "componentType": FLOAT, "count": vertices.len(), "type": "VEC3",
+            "min": bound(Vec3::INFINITY, Vec3::min), "max": bound(Vec3::NEG_INFINITY, Vec3::max),
+        }));
+        self.accessors.push(json!({
+            "bufferView": 0, "byteOffset": start + 12, "componentType": FLOAT, "count": vertices.len(), "type": "VEC2",
+        }));
+        for (position, coordinate) in vertices {
+            let numbers = position.to_array().into_iter().chain(coordinate.to_array());
+            self.vertices.extend(numbers.flat_map(f32::to_le_bytes));
+        }
+        [first, first + 1]
+    }
+
+    /// The mesh of an instance, with materials of its own.
+    fn add_mesh(
+        &mut self,
+        lightmap: &Lightmap,
+        instance: usize,
+        primitives: &[Primitive],
+        look: &Look,
+    ) -> usize {
+        let primitive = |p: &Primitive| {
+            self.materials.push(material(lightmap, instance, p, look));
+            json!({
+                "attributes": { "POSITION": p.positions, "TEXCOORD_0": p.coordinates, "TEXCOORD_1": p.coordinates },
+                "material": self.materials.len() - 1,
+            })
+        };
+        let primitives: Vec<Value> = primitives.iter().map(primitive).collect();
+        let part = lightmap.scene.instances[instance].part.index();
+        self.meshes.push(json!({ "name": lightmap.scene.parts[part].name, "primitives": primitives }));
+        self.meshes.len() - 1
+    }
+
+    /// Vertices and images as one buffer, with the views on it.
+    fn add_images(&mut self, images: &[Vec<u8>]) -> Vec<u8> {
+        let mut buffer = std::mem::take(&mut self.vertices);
+        self.views.push(json!({
+            "buffer": 0, "byteLength": buffer.len(), "byteStride": VERTEX_BYTES, "target": ARRAY_BUFFER,
+        }));
+        for image in images {
+            self.views.push(json!({ "buffer": 0, "byteOffset": buffer.len(), "byteLength": image.len() }));
+            buffer.extend(image);
+            buffer.resize(buffer.len().next_multiple_of(4), 0);
+        }
+        buffer
+    }
+
+    fn json(self, bytes: usize, images: usize, look: &Look) -> Value {
+        let own = match look {
+            Look::Emissive(_) => "KHR_materials_emissive_strength",
+            Look::Unlit => "KHR_materials_unlit",
+        };
+        json!({
+            "asset": { "version": "2.0", "generator": "Equilux" },
+            "extensionsUsed": ["KHR_texture_transform", own],
+            "scene": 0,
+            "scenes": [{ "nodes": (0..self.nodes.len()).collect::<Vec<_>>() }],
+            "nodes": self.nodes,
+            "meshes": self.meshes,
+            "materials": self.materials,
+            "textures": (0..images).map(|image| json!({ "source": image, "sampler": 0 })).collect::<Vec<_>>(),
+            "images": (0..images).map(|image| json!({ "bufferView": image + 1, "mimeType": "image/png" })).collect::<Vec<_>>(),
+            // Linear, without smaller images: those would mix charts.
+            "samplers": [{ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 }],
+            "accessors": self.accessors,
+            "bufferViews": self.views,
+            "buffers": [{ "byteLength": bytes }],
+        })
+    }
+}
+
+fn material(lightmap: &Lightmap, instance: usize, primitive: &Primitive, look: &Look) -> Value {
+    let rectangle = &rectangles(lightmap, instance)[primitive.sheet];
+    let texture = json!({
+        "index": rectangle.image, "texCoord": 1,
+        "extensions": { "KHR_texture_transform": { "offset": rectangle.offset, "scale": rectangle.scale } },
+    });
+    let source = &lightmap.materials_of(instance)[primitive.material.index()];
+    match look {
+        Look::Emissive(peaks) => json!({
+            "name": source.name,
+            "pbrMetallicRoughness": {
+                "baseColorFactor": opaque(source.reflectance), "metallicFactor": 0.0, "roughnessFactor": 1.0,
+            },
+            "emissiveFactor": [1.0, 1.0, 1.0],
+            "emissiveTexture": texture,
+            "extensions": {
+                "KHR_materials_emissive_strength": { "emissiveStrength": peaks[&(instance, primitive.material)] / PI },
+            },
+        }),
+        Look::Unlit => json!({
+            "name": source.name,
+            "pbrMetallicRoughness": { "baseColorTexture": texture, "metallicFactor": 0.0, "roughnessFactor": 1.0 },
+            "extensions": { "KHR_materials_unlit": {} },
+        }),
+    }
+}
+
+fn opaque([r, g, b]: Rgb) -> [f64; 4] {
+    [r, g, b, 1.0]
+}
+
+/// The corners of a convex polygon's triangles.
+fn triangles(corners: &[DVec3]) -> impl Iterator<Item = DVec3> {
+    (2..corners.len()).flat_map(|i| [corners[0], corners[i - 1], corners[i]])
+}

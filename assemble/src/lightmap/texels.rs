@@ -1,0 +1,147 @@
+//! What of a scene's surfaces lies in each texel. In go a chart and its grid, in the coordinates of their part, and an
+//! instance's placement; out come texels with their footprints in scene coordinates.
+
+use super::chart::Chart;
+use super::grid::Grid;
+use super::patch::Patch;
+use equilux_bake::form_factor::polygon::{Polygon, Side, clip};
+use equilux_formats::MaterialId;
+use glam::{DAffine3, DVec2, DVec3};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// A chart of an instance, in scene coordinates, metres.
+#[derive(Debug, Clone)]
+pub struct Texels {
+    /// The instance, by number.
+    pub instance: usize,
+    /// The material of all, by its number in the part.
+    pub material: MaterialId,
+    /// The planes that the chart lies in. Texel coordinates count from the corner of the chart's rectangle.
+    pub patches: Vec<Patch>,
+    /// The texels that hold some of the chart, row after row.
+    pub texels: Vec<Texel>,
+}
+
+/// A texel that holds some of a chart.
+#[derive(Debug, Clone)]
+pub struct Texel {
+    /// Its column and row in the chart's rectangle.
+    pub at: [u32; 2],
+    /// Its footprint: the parts of the chart's sides inside its square.
+    pub pieces: Vec<Piece>,
+}
+
+/// A planar convex piece of a side.
+#[derive(Debug, Clone)]
+pub struct Piece {
+    /// The patch it lies in, by number.
+    pub patch: usize,
+    /// Corners, counter-clockwise seen from the lit side, metres.
+    pub corners: Polygon,
+    /// Unit normal of the lit side.
+    pub normal: DVec3,
+    /// Area, m².
+    pub area: f64,
+}
+
+impl Texel {
+    /// The area of its footprint, m².
+    pub fn area(&self) -> f64 {
+        self.pieces.iter().map(|piece| piece.area).sum()
+    }
+}
+
+impl Texels {
+    /// The texels of `chart` in these `rows` of its rectangle; `instance` places it by `placement`, a similarity.
+    pub fn new(chart: &Chart, grid: &Grid, rows: Range<u32>, instance: usize, placement: DAffine3) -> Self {
+        let patches: Vec<Patch> = grid.patches().copied().collect();
+        let mut texels: BTreeMap<[u32; 2], Vec<Piece>> = BTreeMap::new();
+        let determinant = placement.matrix3.determinant();
+        let grows = determinant.abs().cbrt().powi(2);
+        for (side, &patch) in chart.sides.iter().zip(&chart.planes) {
+            let on_plane = &patches[patch];
+            let texel = |&p: &DVec3| grid.texel_of(patch, p).extend(0.0);
+            let seen: Polygon = side.corners.as_slice().iter().map(texel).collect();
+            let normal = placement.transform_vector3(side.normal).normalize();
+            let turned_over = (determinant < 0.0) != (area(&seen) < 0.0);
+            // The side's own share, whatever its plane is taken to be: so areas add up to that of the sides.
+            let ratio = side.area / area(&seen) * grows;
+            let Some(seen) = between(seen, &rows) else { continue };
+            into_squares(seen, |[column, row], piece| {
+                let area = area(&piece) * ratio;
+                let point = |p: &DVec3| placement.transform_point3(on_plane.point(p.truncate()));
+                let mut corners: Polygon = piece.iter().map(point).collect();
+                if turned_over {
+                    corners.reverse();
+                }
+                texels.entry([row, column]).or_default().push(Piece { patch, corners, normal, area });
+            });
+        }
+        let texel = |([row, column], pieces): ([u32; 2], Vec<Piece>)| Texel { at: [column, row], pieces };
+        Self {
+            instance,
+            material: chart.material,
+            patches: patches.iter().map(|patch| patch.placed(placement)).collect(),
+            texels: texels.into_iter().map(texel).collect(),
+        }
+    }
+}
+
+/// Twice the area of a polygon in the plane z = 0.
+fn area(polygon: &[DVec3]) -> f64 {
+    let from = polygon[0];
+    polygon.windows(2).skip(1).map(|edge| (edge[0] - from).cross(edge[1] - from).z).sum()
+}
+
+/// What of a polygon lies in these rows.
+fn between(polygon: Polygon, rows: &Range<u32>) -> Option<Polygon> {
+    let polygon = kept(clip(&polygon, |p| p.y - f64::from(rows.start)), &polygon)?;
+    kept(clip(&polygon, |p| f64::from(rows.end) - p.y), &polygon)
+}
+
+/// Cut a polygon along whole coordinates, and `emit` each piece with the square it lies in.
+fn into_squares(polygon: Polygon, mut emit: impl FnMut([u32; 2], Polygon)) {
+    slices(polygon, 1, |row, slice| slices(slice, 0, |column, piece| emit([column, row], piece)));
+}
+
+/// Cut a polygon along whole coordinates of one axis.
+fn slices(polygon: Polygon, axis: usize, mut emit: impl FnMut(u32, Polygon)) {
+    let reach = |pick: fn(f64, f64) -> f64, start: f64| polygon.iter().map(|p| p[axis]).fold(start, pick);
+    let (first, end) = (reach(f64::min, f64::INFINITY).floor(), reach(f64::max, f64::NEG_INFINITY).ceil());
+    let mut rest = Some(polygon);
+    let mut line = first;
+    while let Some(whole) = rest.take() {
+        line += 1.0;
+        let number = (line - 1.0) as u32;
+        if line >= end {
+            return emit(number, whole);
+        }
+        let below = kept(clip(&whole, |p| line - p[axis]), &whole);
+        rest = kept(clip(&whole, |p| p[axis] - line), &whole);
+        if let Some(below) = below {
+            emit(number, below);
+        }
+    }
+}
+
+fn kept(side: Side, whole: &Polygon) -> Option<Polygon> {
+    match side {
+        Side::All => Some(whole.clone()),
+        Side::None => None,
+        Side::Piece(piece) => Some(piece),
+    }
+}
+
+/// The four texels around a place in a chart's rectangle, and the weights that a bilinear lookup gives them.
+pub fn bilinear(place: DVec2, width: u32) -> [(usize, f64); 4] {
+    let corner = (place - 0.5).floor();
+    let part = place - 0.5 - corner;
+    let index = |x: f64, y: f64| (corner.y + y) as usize * width as usize + (corner.x + x) as usize;
+    [
+        (index(0.0, 0.0), (1.0 - part.x) * (1.0 - part.y)),
+        (index(1.0, 0.0), part.x * (1.0 - part.y)),
+        (index(0.0, 1.0), (1.0 - part.x) * part.y),
+        (index(1.0, 1.0), part.x * part.y),
+    ]
+}

@@ -1,0 +1,94 @@
+//! A lightmap's files: `lightmap.exr`, `lightmap.png`, `lightmapped.glb`, `lightmapped.unlit.glb` and `lightmaps.json`.
+//!
+//! The unlit model is a file of its own and not a variant in the other: KHR_materials_variants shows its second look only
+//! in viewers that know it, and most engines do not.
+
+use super::images::{exr, half_scale, peaks, png, relative_png, shown_png};
+use super::listing::{File, listing};
+use super::model::{Look, model};
+use super::{Lightmap, Units};
+use crate::exposure::Exposure;
+use crate::output_file;
+use equilux_formats::{Error, Result};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// What was written.
+pub struct Saved {
+    /// The files.
+    pub paths: Vec<PathBuf>,
+    /// What a person should know of them.
+    pub notes: Vec<String>,
+}
+
+/// Write all files of `lightmap` to `folder`, and take away images that an earlier, larger one left there.
+pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposure) -> Result<Saved> {
+    let most =
+        lightmap.irradiance.iter().flatten().flatten().fold(0.0f64, |most, &h| most.max(h)) * units.factor();
+    let scale = half_scale(most);
+    let made = |result: io::Result<Vec<u8>>| result.map_err(|error| unmade(folder, &error));
+    let numbers = 0..lightmap.atlas.images.len();
+    let images: Vec<[File; 2]> = numbers
+        .clone()
+        .map(|number| {
+            Ok([
+                File {
+                    name: name(number, "exr"),
+                    bytes: made(exr(lightmap, number, units.factor() * scale))?,
+                },
+                File { name: name(number, "png"), bytes: made(png(lightmap, number, exposure))? },
+            ])
+        })
+        .collect::<Result<_>>()?;
+    let list = format!("{:#}\n", listing(lightmap, &images, units, scale)).into_bytes();
+    let peaks = peaks(lightmap);
+    let pages = |page: &dyn Fn(usize) -> io::Result<Vec<u8>>| {
+        numbers.clone().map(|n| made(page(n))).collect::<Result<Vec<_>>>()
+    };
+    let relative = pages(&|number| relative_png(lightmap, number, &peaks))?;
+    let shown = pages(&|number| shown_png(lightmap, number, exposure))?;
+    let models = [
+        ("lightmapped.glb", made(model(lightmap, &relative, &Look::Emissive(&peaks)))?),
+        ("lightmapped.unlit.glb", made(model(lightmap, &shown, &Look::Unlit))?),
+    ];
+    let files = models.into_iter().map(|(name, bytes)| File { name: name.into(), bytes });
+    let files: Vec<File> = images.into_iter().flatten().chain(files).collect();
+    let mut paths = Vec::new();
+    for File { name, bytes } in files.iter().chain([&File { name: "lightmaps.json".into(), bytes: list }]) {
+        let path = folder.join(name);
+        output_file::write(&path, |out| out.write_all(bytes))?;
+        paths.push(path);
+    }
+    remove_images_from(folder, numbers.end);
+    let scaled = format!(
+        "half floats do not reach the lightmap's brightest light, {most:.3e}: its numbers are multiplied by {scale}"
+    );
+    let notes = lightmap.atlas.notes.iter().cloned().chain((scale != 1.0).then_some(scaled));
+    Ok(Saved { paths, notes: notes.collect() })
+}
+
+/// The first image has no number: mostly it is the only one.
+fn name(number: usize, ending: &str) -> String {
+    if number == 0 { format!("lightmap.{ending}") } else { format!("lightmap-{}.{ending}", number + 1) }
+}
+
+/// Take away images numbered `first` and above.
+fn remove_images_from(folder: &Path, first: usize) {
+    for number in first.. {
+        let removed =
+            ["exr", "png"].map(|ending| std::fs::remove_file(folder.join(name(number, ending))).is_ok());
+        if removed == [false; 2] {
+            break;
+        }
+    }
+}
+
+fn unmade(folder: &Path, error: &io::Error) -> Error {
+    let expected = "images and models that can be encoded";
+    Error::new(
+        folder,
+        format!("the lightmap could not be encoded ({error})"),
+        expected,
+        "report this as a bug",
+    )
+}
