@@ -128,7 +128,9 @@ impl Coupler<'_> {
             resolution: self.resolution,
             revision: None,
         };
-        let Some(found) = self.block((instance, COUPLING), request, Some(own), None)? else { return Ok(None) };
+        let Some(found) = self.block((instance, COUPLING), request, Some(own), None)? else {
+            return Ok(None);
+        };
         let Block { rows: coupling, origin, computed, time, .. } = found;
         Ok(Some(Coupled { coupling, origin, computed, corrected, time }))
     }
@@ -163,7 +165,9 @@ impl Coupler<'_> {
         // The part alone is a scene too: what stands inside appeared in it.
         let part = &self.placed.part_of(instance).part;
         let alone = Older::alone(self.placed, instance, &intruders);
-        let Some(found) = self.block((instance, CORRECTED), request, None, Some(alone))? else { return Ok(None) };
+        let Some(found) = self.block((instance, CORRECTED), request, None, Some(alone))? else {
+            return Ok(None);
+        };
         let Block { rows: self_block, origin, computed, key, time } = found;
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let optics = self.placed.paint_of(instance);

@@ -2,10 +2,12 @@
 //! known answers.
 
 pub mod assembled;
+pub mod averages;
 pub mod cases;
 pub mod corridors;
 pub mod curved;
 pub mod levels;
+pub mod lit;
 pub mod measure;
 pub mod model;
 pub mod modular;

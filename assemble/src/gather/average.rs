@@ -39,42 +39,79 @@ impl Gather {
         found
     }
 
-    fn glow_over(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {
-        let mut found = vec![[0.0; 3]; pieces.len()];
-        let mut open: Vec<usize> = (0..pieces.len()).collect();
-        for (step, &grid) in GRIDS.iter().enumerate() {
-            let averages = self.averages(pieces, &open, grid);
-            let mut moves = Vec::new();
-            for (&number, average) in open.iter().zip(averages) {
-                let before = std::mem::replace(&mut found[number], average);
-                let stays = |c: usize| (average[c] - before[c]).abs() <= STAYS * average[c].max(0.1 * unit[c]);
-                if step == 0 || !(0..3).all(stays) {
-                    moves.push(number);
-                }
-            }
-            open = moves;
-        }
+    /// The average reflected irradiance of pieces, W/m²: from their middles where nothing stands near, else from grids as
+    /// direct light.
+    pub fn reflected_over(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {
+        let reflected = |points: &[Element]| self.reflected(points);
+        let all: Vec<usize> = (0..pieces.len()).collect();
+        let mut found = averages(pieces, &all, 1, &reflected);
+        let near: Vec<usize> = all.into_iter().filter(|&number| self.stands_near(&pieces[number])).collect();
+        refine(pieces, &mut found, near, &GRIDS[1..], unit, reflected);
         found
     }
 
-    /// The averages over grids of some pieces.
-    fn averages(&self, pieces: &[Piece], which: &[usize], grid: usize) -> Vec<Rgb> {
-        let (mut points, mut weights): (Vec<Element>, Vec<(usize, f64)>) = (vec![], vec![]);
-        for (place, &number) in which.iter().enumerate() {
-            let piece = &pieces[number];
-            for cell in cells(piece.corners, grid) {
-                let (centre, area) = centre(&cell, piece.normal);
-                let Some(face) = piece.plane.face_at(centre) else { continue };
-                points.push(receiver(centre, piece.normal, face));
-                weights.push((place, area / piece.area));
+    /// Whether anything stands before a piece at less than its own size.
+    fn stands_near(&self, piece: &Piece) -> bool {
+        let low = piece.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = piece.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let reach = (high - low).length() / 2.0;
+        self.anything_before((low - reach, high + reach), piece.corners[0], piece.normal)
+    }
+
+    fn glow_over(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {
+        let glow = |points: &[Element]| self.glow(points);
+        let all: Vec<usize> = (0..pieces.len()).collect();
+        let mut found = averages(pieces, &all, GRIDS[0], &glow);
+        refine(pieces, &mut found, all, &GRIDS[1..], unit, glow);
+        found
+    }
+}
+
+/// Take finer and finer grids for those of `open` whose average does not stay.
+fn refine(
+    pieces: &[Piece],
+    found: &mut [Rgb],
+    mut open: Vec<usize>,
+    grids: &[usize],
+    unit: Rgb,
+    light: impl Fn(&[Element]) -> Vec<Rgb>,
+) {
+    for &grid in grids {
+        let averages = averages(pieces, &open, grid, &light);
+        let mut moves = Vec::new();
+        for (&number, average) in open.iter().zip(averages) {
+            let before = std::mem::replace(&mut found[number], average);
+            let stays = |c: usize| (average[c] - before[c]).abs() <= STAYS * average[c].max(0.1 * unit[c]);
+            if !(0..3).all(stays) {
+                moves.push(number);
             }
         }
-        let mut sums = vec![[0.0; 3]; which.len()];
-        for ((place, weight), light) in weights.into_iter().zip(self.glow(&points)) {
-            sums[place] = added(sums[place], light.map(|h| h * weight));
-        }
-        sums
+        open = moves;
     }
+}
+
+/// The averages over grids of some pieces.
+fn averages(
+    pieces: &[Piece],
+    which: &[usize],
+    grid: usize,
+    light: &impl Fn(&[Element]) -> Vec<Rgb>,
+) -> Vec<Rgb> {
+    let (mut points, mut weights): (Vec<Element>, Vec<(usize, f64)>) = (vec![], vec![]);
+    for (place, &number) in which.iter().enumerate() {
+        let piece = &pieces[number];
+        for cell in cells(piece.corners, grid) {
+            let (centre, area) = centre(&cell, piece.normal);
+            let Some(face) = piece.plane.face_at(centre) else { continue };
+            points.push(receiver(centre, piece.normal, face));
+            weights.push((place, area / piece.area));
+        }
+    }
+    let mut sums = vec![[0.0; 3]; which.len()];
+    for ((place, weight), light) in weights.into_iter().zip(light(&points)) {
+        sums[place] = added(sums[place], light.map(|h| h * weight));
+    }
+    sums
 }
 
 /// A polygon cut into a grid of `count` × `count` cells, along its first edge and across it.

@@ -41,7 +41,8 @@ impl Faces {
 impl Plane<'_> {
     /// The face that holds the point, or whose edge is nearest to it; none if there is no face in the plane.
     pub fn face_at(&self, point: DVec3) -> Option<FaceId> {
-        let nearest = self.faces.iter().min_by(|(_, a), (_, b)| outside(a, point).total_cmp(&outside(b, point)));
+        let nearest =
+            self.faces.iter().min_by(|(_, a), (_, b)| outside(a, point).total_cmp(&outside(b, point)));
         nearest.map(|(face, _)| *face)
     }
 }

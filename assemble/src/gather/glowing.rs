@@ -27,7 +27,8 @@ pub fn surfaces(placed: &Placed, emission: &[Rgb]) -> Surfaces {
                 Some([0.0, 0.0, 0.0]) => {}
                 Some(sends) if let Some(polygon) = polygon(placed, k, node) => found.push((polygon, sends)),
                 _ => {
-                    let children = clusters.children_of(node).expect("an element is a polygon of one emission");
+                    let children =
+                        clusters.children_of(node).expect("an element is a polygon of one emission");
                     open.extend(children.map(|child| child as usize));
                 }
             }

@@ -81,7 +81,9 @@ impl Lamp {
             if world.coplanar(face, FaceId(number)) {
                 return;
             }
-            let Some(pyramid) = hidden_pyramid(self.position, &world.faces[number as usize], plane) else { return };
+            let Some(pyramid) = hidden_pyramid(self.position, &world.faces[number as usize], plane) else {
+                return;
+            };
             let mut outside = Vec::with_capacity(lit.len());
             lit.drain(..).for_each(|left| pyramid.subtract_from(left, &mut outside));
             lit = outside;

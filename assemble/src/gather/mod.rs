@@ -17,6 +17,7 @@ use crate::placed::Placed;
 use equilux_bake::equilibrium::{added, apply, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
+use equilux_bake::visibility::Inside;
 use equilux_bake::world::World;
 use equilux_formats::{Corners, Element, FaceId, Geometry, MaterialId, Rgb};
 use faces::Faces;
@@ -124,6 +125,33 @@ impl Gather {
         let reflected = self.from(points, &self.scene, &self.reflected, self.resolution);
         let sky = self.from(points, self.sky.as_slice(), &self.shining, EXACT);
         reflected.into_iter().zip(sky).map(|(a, b)| added(a, b)).collect()
+    }
+
+    /// Whether anything with corners on the lit side of the plane through `point` may lie in a box.
+    pub fn anything_before(&self, (low, high): (DVec3, DVec3), point: DVec3, normal: DVec3) -> bool {
+        let slack = 1e-6 * (high - low).length();
+        let before = |corner: &DVec3| normal.dot(*corner - point) > slack;
+        let tree = &self.world.occluders.tree;
+        let mut open: Vec<usize> = tree.root().into_iter().collect();
+        while let Some(index) = open.pop() {
+            let node = tree.node(index);
+            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
+                continue;
+            }
+            match tree.inside(index) {
+                Inside::Boxes(pair) => open.extend(pair),
+                Inside::Things(things) => {
+                    let near =
+                        things.iter().map(|&thing| &self.world.occluders.all[thing as usize]).any(|o| {
+                            o.low.cmple(high).all() && o.high.cmpge(low).all() && o.corners.iter().any(before)
+                        });
+                    if near {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
     }
 
     fn from(&self, points: &[Element], senders: &[usize], sent: &[Rgb], resolution: Resolution) -> Vec<Rgb> {

@@ -15,6 +15,7 @@ mod dilate;
 pub mod estimate;
 pub mod grid;
 mod images;
+pub mod light;
 mod listing;
 mod model;
 mod nearest;

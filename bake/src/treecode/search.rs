@@ -90,7 +90,8 @@ impl<'a> Search<'a> {
             Some(seen) => seen[elements.clone()].iter().map(|seen| 1.0 - seen).collect(),
             None => vec![1.0; elements.len()],
         };
-        let receivers = Receivers::new(request.world, &request.receivers.elements(request.world)[elements.clone()]);
+        let receivers =
+            Receivers::new(request.world, &request.receivers.elements(request.world)[elements.clone()]);
         let revised = request.revision.as_ref();
         if let Some(group) =
             revised.filter(|_| frontier.is_empty()).and_then(|r| r.untouched(request, &elements))
