@@ -21,10 +21,10 @@ pub struct Classic {
 }
 
 /// Compute the whole matrix at once and solve it at once. None if the monitor was stopped.
-pub fn classic(placed: &Placed, monitor: &Monitor) -> Option<Classic> {
+/// `optics` are those of all elements, emission with all that drives the exchange.
+pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Option<Classic> {
     let (matrix, form_factor_time) = whole_matrix(placed, monitor)?;
     let start = Instant::now();
-    let optics = whole_optics(placed);
     let trees: Vec<&ClusterTree> =
         (0..placed.instances.len()).map(|k| &placed.part_of(k).part.geometry.clusters).collect();
     let clusters = ClusterTree::joined(&trees);

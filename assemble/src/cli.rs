@@ -1,6 +1,8 @@
 //! The command line of `assemble`.
 
 use crate::exchange::{Goal, Method};
+use crate::gather::outside::LightUnits;
+use crate::gather::sky::Sky;
 use crate::lightmap::{Units, Wanted};
 use crate::plan::{Plan, plan};
 use crate::proof::sample::ExactRows;
@@ -72,6 +74,13 @@ struct Assembly {
     /// Which pictures to draw; the result as a model is always written
     #[arg(long, value_name = "WHICH", default_value = "rounds")]
     pictures: Drawn,
+    /// What shines from all around: a radiance in W/(m² sr), one number or R,G,B, or an equirectangular picture,
+    /// .hdr or .exr, whose middle is -Z and top +Y
+    #[arg(long, value_name = "RADIANCE|FILE", value_parser = sky)]
+    sky: Option<Sky>,
+    /// What the intensities of the file's lights mean
+    #[arg(long, value_name = "UNITS", default_value = "radiometric")]
+    light_units: Intensities,
     /// Write lightmaps: lightmap.exr and .png, what lies where in them, and models that carry them
     #[arg(long)]
     lightmaps: bool,
@@ -114,6 +123,17 @@ enum Drawn {
     Last,
     /// None
     None,
+}
+
+/// The units of lights on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Intensities {
+    /// W/sr and W/m², number for number what the file calls candela and lux
+    Radiometric,
+    /// Candela and lux of light of 683 lm/W: what Blender writes by default
+    Photometric,
+    /// Watts of whole lamps: what Blender writes with `Raw`
+    BlenderRaw,
 }
 
 /// The units' name on the command line.
@@ -235,6 +255,12 @@ impl Assembly {
                 Drawn::Last => Pictures::Last,
                 Drawn::None => Pictures::None,
             },
+            light_units: match self.light_units {
+                Intensities::Radiometric => LightUnits::Radiometric,
+                Intensities::Photometric => LightUnits::Photometric,
+                Intensities::BlenderRaw => LightUnits::BlenderRaw,
+            },
+            sky: self.sky.clone(),
             lightmaps: self.lightmaps.then_some(Wanted {
                 texel_size: self.texel_size,
                 units: match self.lightmap_units {
@@ -254,6 +280,18 @@ fn exact_rows(text: &str) -> Result<ExactRows, String> {
         _ if text == "all" => Ok(ExactRows::All),
         Ok(rows) => Ok(ExactRows::About(rows)),
         Err(_) => Err("exact rows are a whole number of them, or `all`".into()),
+    }
+}
+
+fn sky(text: &str) -> Result<Sky, String> {
+    let numbers: Vec<Option<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [Some(all)] if all >= 0.0 && all.is_finite() => Ok(Sky::Uniform([all; 3])),
+        [Some(r), Some(g), Some(b)] if [r, g, b].iter().all(|l| *l >= 0.0 && l.is_finite()) => {
+            Ok(Sky::Uniform([r, g, b]))
+        }
+        [None] => Ok(Sky::Picture(text.into())),
+        _ => Err("a sky is one number or three with commas between them, 0 or more, or a picture".into()),
     }
 }
 

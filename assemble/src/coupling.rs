@@ -245,14 +245,16 @@ impl Coupler<'_> {
         Some(self.store.target(&last.key()))
     }
 
-    fn name(&self, instance: usize, what: &str) -> String {
+    /// What such a block of an instance is called in the cache.
+    pub fn name(&self, instance: usize, what: &str) -> String {
         let instances = &self.placed.instances;
         let name = &instances[instance].name;
         let twins = instances[..instance].iter().filter(|other| other.name == *name).count();
         format!("{what} of {name} #{twins} in {}", self.file.display())
     }
 
-    fn manifest(&self, instance: usize, what: &str) -> Manifest {
+    /// What such a block of an instance depends on.
+    pub fn manifest(&self, instance: usize, what: &str) -> Manifest {
         placed_manifest(&self.placed.instances, &self.known(), self.resolution, instance, what)
     }
 

@@ -10,6 +10,7 @@ pub mod classic;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod coupling;
+pub mod direct;
 pub mod elements_csv;
 pub mod exchange;
 mod explain;

@@ -36,6 +36,8 @@ pub struct Light<'a> {
     pub classic: Option<&'a Classic>,
     /// The plan of the lightmap, if asked for.
     pub atlas: Option<&'a Atlas>,
+    /// What shines from outside.
+    pub lights: &'a Lights,
 }
 
 /// What was written.
@@ -110,8 +112,7 @@ fn write_lightmaps(
     let (Some(wanted), Some(atlas)) = (&job.lightmaps, light.atlas) else { return Ok(None) };
     let (placed, outcome) = (light.placed, light.outcome);
     let resolution = job.preparation.resolution;
-    let gather =
-        Gather::new(placed, &light.optics.emission, &outcome.radiosity, &Lights::default(), resolution);
+    let gather = Gather::new(placed, &light.optics.emission, &outcome.radiosity, light.lights, resolution);
     let texel_light = TexelLight::new(&gather, mean_over_area(placed, &outcome.irradiance));
     let lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
     lightmap::write(folder, &lightmap, wanted.units, exposure).map(Some)

@@ -3,8 +3,11 @@
 use crate::account::refuse_endless_light;
 use crate::classic::{classic, whole_optics};
 use crate::coupling::{Coupled, Coupler};
+use crate::direct::{direct, driven, whole, with_direct};
 use crate::exchange::{Goal, Method, exchange, nodes};
 use crate::explain::explained;
+use crate::gather::outside::{LightUnits, lights};
+use crate::gather::sky::Sky;
 use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
@@ -57,6 +60,10 @@ pub struct Job {
     pub verify: bool,
     /// Whether to start from the light of the last such run of the scene, and to keep this one's for the next.
     pub warm: bool,
+    /// What the intensities of the file's lights mean.
+    pub light_units: LightUnits,
+    /// What shines from all around; none for darkness.
+    pub sky: Option<Sky>,
     /// Which rounds get pictures.
     pub pictures: Pictures,
     /// Which lightmaps to write; none to write none.
@@ -88,18 +95,29 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let coupled = couple(job, &placed, &store, monitor)?.ok_or_else(stopped)?;
     placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
 
-    let each: Vec<Optics> = (0..placed.instances.len()).map(|k| placed.optics_of(k)).collect();
+    let lights = lights(&scene.lights, job.light_units, job.sky.as_ref(), &placed.world)?;
+    let coupler = Coupler {
+        placed: &placed,
+        store: &store,
+        file: &job.scene,
+        resolution: job.preparation.resolution,
+        monitor,
+    };
+    let direct = direct(&coupler, &lights)?.ok_or_else(stopped)?;
+    let driven: Vec<Optics> =
+        (0..placed.instances.len()).map(|k| driven(&placed.optics_of(k), &direct.irradiance[k])).collect();
     let optics = whole_optics(&placed);
-    let nodes = nodes(&placed, &coupled, &each);
-    refuse_endless_light(&placed, &nodes, &optics, &job.scene)?;
+    let nodes = nodes(&placed, &coupled, &driven);
+    refuse_endless_light(&placed, &nodes, &whole(&driven), &job.scene)?;
     let start_light = if job.warm { last_light(&placed, &store, &job.scene) } else { None };
-    let outcome = exchange(&nodes, job.method, job.goal, start_light.as_deref(), monitor);
+    let mut outcome = exchange(&nodes, job.method, job.goal, start_light.as_deref(), monitor);
     if job.warm {
         keep(&placed, &store, &job.scene, &outcome.radiosity)?;
     }
     let proof = prove(&placed, &nodes, &outcome, job.exact_rows, monitor);
     let peak = peak_rss();
-    let classic = if job.verify { classic(&placed, monitor) } else { None };
+    let classic = if job.verify { classic(&placed, &whole(&driven), monitor) } else { None };
+    with_direct(&mut outcome.irradiance, &direct.irradiance);
 
     let light = Light {
         placed: &placed,
@@ -107,6 +125,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         outcome: &outcome,
         classic: classic.as_ref(),
         atlas: atlas.as_ref(),
+        lights: &lights,
     };
     let Written { paths: outputs, notes } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {
@@ -124,6 +143,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&run) };
     report.bytes.peak_rss = peak;
+    report.form_factors_computed += direct.computed;
     if job.explain {
         report.explained = explained(&placed, &coupled);
     }

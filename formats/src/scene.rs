@@ -93,6 +93,8 @@ pub struct PunctualLight {
     pub intensity: [f64; 3],
     /// Which of the extension's three lights it is.
     pub kind: LightKind,
+    /// How wide a directional light looks, radians; 0 for parallel rays (`extras.angular_diameter`, degrees).
+    pub angle: f64,
 }
 
 /// The three lights of KHR_lights_punctual.

@@ -3,6 +3,7 @@
 //! columns mean.
 
 use equilux_assemble::exchange::{Goal, Method};
+use equilux_assemble::gather::outside::LightUnits;
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
@@ -78,6 +79,8 @@ fn assembled(scene: &Path) -> Table {
         elements: Some(elements.clone()),
         depfile: None,
         lightmaps: None,
+        light_units: LightUnits::Radiometric,
+        sky: None,
         cache_limit: None,
     };
     let report = run(&job, &Monitor::default()).unwrap();

@@ -24,6 +24,9 @@ pub struct Piece<'a> {
 /// Grids of this many cells a side, one after the other.
 const GRIDS: [usize; 4] = [1, 2, 4, 8];
 
+/// Of them for reflected light, which has no edges but where things touch.
+const COARSE_GRIDS: &[usize] = &[2, 4];
+
 /// A finer grid is taken where the last step changed the average by more than this share. Midpoint rules err by a third of
 /// their last change where light is smooth, by less than that change at the edges of shadows.
 const STAYS: f64 = 0.01;
@@ -46,7 +49,7 @@ impl Gather {
         let all: Vec<usize> = (0..pieces.len()).collect();
         let mut found = averages(pieces, &all, 1, &reflected);
         let near: Vec<usize> = all.into_iter().filter(|&number| self.stands_near(&pieces[number])).collect();
-        refine(pieces, &mut found, near, &GRIDS[1..], unit, reflected);
+        refine(pieces, &mut found, near, COARSE_GRIDS, unit, reflected);
         found
     }
 

@@ -27,6 +27,11 @@ impl Faces {
         Self { faces: world.faces.clone(), size: size.fold(0.0, f64::max) }
     }
 
+    /// The plane of one face, with that face alone.
+    pub fn plane_of(&self, face: FaceId) -> Plane<'_> {
+        Plane { faces: vec![(face, &self.faces[face.index()])] }
+    }
+
     /// The faces in the plane through `point` with this normal or its opposite.
     pub fn in_plane(&self, point: DVec3, normal: DVec3) -> Plane<'_> {
         let lies = |face: &Face| {

@@ -11,6 +11,7 @@ pub mod average;
 pub mod faces;
 mod glowing;
 pub mod lamps;
+pub mod outside;
 pub mod sky;
 
 use crate::placed::Placed;

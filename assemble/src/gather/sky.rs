@@ -1,1 +1,108 @@
-//! sky
+//! The sky as far polygons: the six sides of a cube around the scene, each in cells that look equally wide from its middle.
+//!
+//! What a sky sends changes no visibility: its cells stay, and each sends what the sky has there on average.
+
+use equilux_bake::clusters::hierarchy;
+use equilux_formats::{Corners, Element, Error, Face, FaceId, Geometry, MaterialId, Result, Rgb};
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use std::path::{Path, PathBuf};
+
+/// What shines from all around.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Sky {
+    /// The same radiance everywhere, W/(m² sr).
+    Uniform(Rgb),
+    /// An equirectangular picture of radiances, .hdr or .exr: its middle is −Z, its top +Y.
+    Picture(PathBuf),
+}
+
+/// Cells along each edge of the cube: 7.5° each.
+pub const CELLS: usize = 12;
+
+/// The cube's sides are this many sizes of the scene away, so directions differ by less than 1e-3.
+const FAR: f64 = 1e3;
+
+/// The sky's cells around a scene, without light.
+pub fn dome(centre: DVec3, size: f64) -> Geometry {
+    let mut faces = Vec::new();
+    let mut elements = Vec::new();
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            // Corners run counter-clockwise seen from inside.
+            let (n, u) = (DVec3::AXES[axis] * sign, DVec3::AXES[(axis + 1) % 3]);
+            let v = u.cross(n);
+            let at = |s: f64, t: f64| centre + (n + u * s + v * t) * (FAR * size);
+            let face = FaceId(faces.len() as u32);
+            faces.push(Face::new(vec![at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]));
+            let line = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / CELLS as f64 - 1.0)).tan();
+            for j in 0..CELLS {
+                for i in 0..CELLS {
+                    let [(s0, t0), (s1, t1)] = [(line(i), line(j)), (line(i + 1), line(j + 1))];
+                    let corners = Corners::quad([at(s0, t0), at(s1, t0), at(s1, t1), at(s0, t1)]);
+                    elements.push(Element::new(corners, MaterialId(0), face));
+                }
+            }
+        }
+    }
+    let (order, clusters) = hierarchy(&elements);
+    Geometry { elements: order.into_iter().map(|i| elements[i]).collect(), faces, clusters }
+}
+
+impl Sky {
+    /// What each cell of a dome around `centre` sends, W/m². Fails where the picture cannot be read.
+    pub fn radiosity(&self, dome: &Geometry, centre: DVec3) -> Result<Vec<Rgb>> {
+        match self {
+            Self::Uniform(radiance) => Ok(vec![radiance.map(|l| PI * l); dome.elements.len()]),
+            Self::Picture(file) => {
+                let picture = Picture::read(file)?;
+                Ok(dome.elements.iter().map(|cell| picture.average(cell, centre).map(|l| PI * l)).collect())
+            }
+        }
+    }
+}
+
+/// Radiances by direction.
+struct Picture {
+    width: usize,
+    height: usize,
+    pixels: Vec<[f32; 3]>,
+}
+
+impl Picture {
+    fn read(file: &Path) -> Result<Self> {
+        let expected = "an equirectangular picture, .hdr or .exr, with finite numbers of 0 or more";
+        let wrong = |found: String| Error::new(file, found, expected, "convert the picture, or give another");
+        let image =
+            image::open(file).map_err(|error| wrong(format!("could not be read ({error})")))?.into_rgb32f();
+        let pixels: Vec<[f32; 3]> = image.pixels().map(|pixel| pixel.0).collect();
+        if pixels.iter().flatten().any(|l| !l.is_finite() || *l < 0.0) {
+            return Err(wrong("a pixel that is negative or no number".into()));
+        }
+        Ok(Self { width: image.width() as usize, height: image.height() as usize, pixels })
+    }
+
+    /// The mean over a cell, by points about as dense as the pixels.
+    fn average(&self, cell: &Element, centre: DVec3) -> Rgb {
+        let points = (self.width / (4 * CELLS)).clamp(4, 64);
+        let &[a, b, c, d] = cell.corners.as_slice() else { unreachable!("cells have four corners") };
+        let (mut sum, mut total) = ([0.0; 3], 0.0);
+        for k in 0..points * points {
+            let [s, t] = [k % points, k / points].map(|n| (n as f64 + 0.5) / points as f64);
+            let p = a * (1.0 - s) * (1.0 - t) + b * s * (1.0 - t) + c * s * t + d * (1.0 - s) * t - centre;
+            // The solid angle of a piece of plane.
+            let weight = p.length().powi(-3);
+            let radiance = self.at(p);
+            (0..3).for_each(|channel| sum[channel] += weight * f64::from(radiance[channel]));
+            total += weight;
+        }
+        sum.map(|sum| sum / total)
+    }
+
+    fn at(&self, to: DVec3) -> [f32; 3] {
+        let (u, v) = (0.5 + to.x.atan2(-to.z) / TAU, (to.y / to.length()).clamp(-1.0, 1.0).acos() / PI);
+        let x = ((u * self.width as f64) as usize).min(self.width - 1);
+        let y = ((v * self.height as f64) as usize).min(self.height - 1);
+        self.pixels[y * self.width + x]
+    }
+}

@@ -171,23 +171,18 @@ impl Field<'_> {
         cells.filter_map(|at| self.number.get(&at).copied())
     }
 
-    /// Whether all texels of a square are whole and in one plane, and nothing stands near it.
+    /// Whether a square is full of texels in one plane, and nothing stands near it.
     fn may_be_smooth(&self, square: Square) -> bool {
-        let [x, y] = square.at;
-        let whole = |number: usize| {
-            let texel = &self.texels.texels[number];
-            texel.pieces.len() == 1
-                && texel.pieces[0].patch == self.texels.texels[self.number_at(square)].pieces[0].patch
+        let patch_of = |number: usize| self.texels.texels[number].pieces[0].patch;
+        let [first, last] = [0, square.size - 1].map(|k| self.number.get(&square.at.map(|x| x + k)));
+        let (Some(&first), Some(_)) = (first, last) else { return false };
+        let in_plane = |number: &usize| {
+            self.texels.texels[*number].pieces.iter().all(|piece| piece.patch == patch_of(first))
         };
-        let last = square.size - 1;
-        if self.number.get(&[x, y]).is_none() || self.number.get(&[x + last, y + last]).is_none() {
+        if self.inside(square).filter(in_plane).count() != (square.size * square.size) as usize {
             return false;
         }
-        let all: Vec<usize> = self.inside(square).collect();
-        if all.len() != (square.size * square.size) as usize || !all.iter().all(|&number| whole(number)) {
-            return false;
-        }
-        let patch = &self.texels.patches[self.texels.texels[all[0]].pieces[0].patch];
+        let patch = &self.texels.patches[patch_of(first)];
         let [low, high] = [square.at, square.at.map(|x| x + square.size)].map(|at| at.map(f64::from));
         let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
         let corners = corners.map(|[x, y]| patch.point(glam::dvec2(x, y)));
@@ -195,10 +190,6 @@ impl Field<'_> {
         let box_low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min) - reach;
         let box_high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max) + reach;
         !self.light.gather.anything_before((box_low, box_high), corners[0], patch.normal)
-    }
-
-    fn number_at(&self, square: Square) -> usize {
-        self.number[&square.at]
     }
 }
 

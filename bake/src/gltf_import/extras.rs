@@ -1,5 +1,5 @@
-//! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `local_solver`. Other
-//! keys are somebody else's and are left alone.
+//! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `angular_diameter`,
+//! `local_solver`. Other keys are somebody else's and are left alone.
 
 use super::document::Document;
 use super::nodes::label;
@@ -18,6 +18,8 @@ pub(super) struct Extras {
     pub(super) emission_scale: Option<f64>,
     /// What becomes of materials of everything below the node.
     pub(super) materials: Option<Changes>,
+    /// How wide the directional light at the node looks, degrees.
+    pub(super) angular_diameter: Option<f64>,
     /// How the part's local equilibrium is found.
     pub(super) local_solver: Option<LocalSolver>,
 }
@@ -42,6 +44,9 @@ impl Extras {
                  emissiveStrength (a number), 0 or more",
                 changes,
             )?,
+            angular_diameter: key.get("angular_diameter", "a number from 0 to 90, degrees", |value| {
+                value.as_f64().filter(|angle| (0.0..=90.0).contains(angle))
+            })?,
             local_solver: key.get(
                 "local_solver",
                 "\"direct\", \"gauss-seidel\", \"progressive\" or \"iterative\"",

@@ -35,6 +35,7 @@ pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Res
         direction: DVec3::NEG_Z,
         intensity,
         kind,
+        angle: placed.extras.angular_diameter.unwrap_or(0.0).to_radians(),
     };
     Ok(moved(&at_origin, placed.placement, placed.look.emission_scale))
 }

@@ -1,0 +1,120 @@
+//! The irradiance D of a scene's elements from lights that are no elements. In go the parts in their places and the lights;
+//! out comes D, W/m². Lamps and suns are averaged over each element, and cost no form factor that is kept; what the sky's
+//! cells are to each element is kept in the cache, so that another sky costs nothing.
+
+use crate::coupling::Coupler;
+use crate::gather::average::Piece;
+use crate::gather::faces::Plane;
+use crate::gather::{Gather, Lights};
+use crate::placed::Placed;
+use equilux_bake::cached::cached;
+use equilux_bake::equilibrium::{added, apply};
+use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::world::World;
+use equilux_formats::{Geometry, Optics, Result, Rgb};
+
+/// What lights send to elements.
+pub struct Direct {
+    /// D, W/m², one vector an instance.
+    pub irradiance: Vec<Vec<Rgb>>,
+    /// Form factors computed for the sky.
+    pub computed: usize,
+}
+
+/// D of all elements. None if the monitor was stopped.
+pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
+    let placed = coupler.placed;
+    let dark = vec![[0.0; 3]; placed.world.elements.len()];
+    if lights.is_empty() {
+        return Ok(Some(Direct { irradiance: placed.split(&dark), computed: 0 }));
+    }
+    let mut irradiance = dark.clone();
+    if !(lights.lamps.is_empty() && lights.suns.is_empty()) {
+        coupler.monitor.begin("light of lamps", 1);
+        let sharp = Lights { sky: None, ..lights.clone() };
+        let gather = Gather::new(placed, &dark, &dark, &sharp, EXACT);
+        let planes: Vec<Plane> =
+            placed.world.elements.iter().map(|e| gather.faces().plane_of(e.face)).collect();
+        let pieces: Vec<Piece> = placed
+            .world
+            .elements
+            .iter()
+            .zip(&planes)
+            .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, area: e.area, plane })
+            .collect();
+        irradiance = gather.direct(&pieces, [0.0; 3]);
+    }
+    let mut irradiance = placed.split(&irradiance);
+    let mut computed = 0;
+    if let Some((dome, sends)) = &lights.sky {
+        let mut world = placed.stage();
+        let sky = world.add_far(dome);
+        let seen = dome.clusters.means(sends);
+        for (k, own) in irradiance.iter_mut().enumerate() {
+            let Some((rows, new)) = sky_block(coupler, &world, (sky, dome), k)? else { return Ok(None) };
+            computed += new;
+            own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum = added(*sum, h));
+        }
+    }
+    Ok(Some(Direct { irradiance, computed }))
+}
+
+/// The form factors of an instance's elements to the sky's cells, and how many were computed.
+fn sky_block(
+    coupler: &Coupler,
+    world: &World,
+    (sky, dome): (usize, &Geometry),
+    instance: usize,
+) -> Result<Option<(equilux_formats::Rows, usize)>> {
+    let name = coupler.name(instance, "sky");
+    let cells = dome.elements.len();
+    let manifest = coupler.manifest(instance, "sky").setting("sky's cells", cells);
+    let mut computed = 0;
+    let found = cached(coupler.store, &name, &manifest, coupler.monitor, || {
+        coupler.monitor.begin(
+            format!("sky of {}", coupler.placed.instances[instance].name),
+            world.elements_of(instance).len(),
+        );
+        let request = Request {
+            world,
+            receivers: Audience::Instance(instance),
+            senders: &[sky],
+            columns: world.nodes_of(sky),
+            already: None,
+            // Every cell has its own light, and every sky its own differences between them.
+            resolution: equilux_bake::treecode::Resolution { opening: 0.0, ..coupler.resolution },
+            revision: None,
+        };
+        Ok(block(&request, coupler.monitor).map(|timed| {
+            computed = timed.computed;
+            timed.block
+        }))
+    })?;
+    Ok(found.map(|(rows, _)| (rows, computed)))
+}
+
+/// The same optics with what elements reflect of D as emission: what drives the exchange.
+pub fn driven(optics: &Optics, direct: &[Rgb]) -> Optics {
+    let rows = optics.emission.iter().zip(&optics.reflectance).zip(direct);
+    let emission = rows.map(|((e, rho), d)| std::array::from_fn(|c| e[c] + rho[c] * d[c])).collect();
+    Optics { emission, reflectance: optics.reflectance.clone() }
+}
+
+/// One instance after the other.
+pub fn whole(optics: &[Optics]) -> Optics {
+    Optics {
+        reflectance: optics.iter().flat_map(|o| o.reflectance.iter().copied()).collect(),
+        emission: optics.iter().flat_map(|o| o.emission.iter().copied()).collect(),
+    }
+}
+
+/// H with D.
+pub fn with_direct(irradiance: &mut [Rgb], direct: &[Vec<Rgb>]) {
+    irradiance.iter_mut().zip(direct.iter().flatten()).for_each(|(h, &d)| *h = added(*h, d));
+}
+
+/// Whether the placed parts get light from nowhere.
+pub fn is_dark(placed: &Placed, lights: &Lights) -> bool {
+    lights.is_empty()
+        && (0..placed.instances.len()).all(|k| placed.optics_of(k).emission.iter().all(|e| *e == [0.0; 3]))
+}

@@ -1,0 +1,117 @@
+//! What shines into a scene but is none of its surfaces: the lights of its file, and a sky.
+
+use super::Lights;
+use super::lamps::Lamp;
+use super::sky::{Sky, dome};
+use equilux_bake::clusters::hierarchy;
+use equilux_bake::form_factor::contour;
+use equilux_bake::world::World;
+use equilux_formats::{
+    Corners, Element, Face, FaceId, Geometry, LightKind, MaterialId, PunctualLight, Result, Rgb,
+};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// What the intensities of a file's lights mean. Radiances of surfaces are W/(m² sr) in all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LightUnits {
+    /// W/sr and W/m², number for number what glTF calls candela and lux.
+    Radiometric,
+    /// Candela and lux of light of 683 lm/W, as Blender writes them by default.
+    Photometric,
+    /// Watts of whole lamps, as Blender writes them with `Raw`: W/(4π) to each sr. Parallel light is W/m².
+    BlenderRaw,
+}
+
+/// Luminous efficacy that Blender's exporter takes for watts, lm/W (Standard, PBR_WATTS_TO_LUMENS).
+const LUMENS_PER_WATT: f64 = 683.0;
+
+/// Suns stand this many sizes of the scene away.
+const FAR: f64 = 1e4;
+
+/// Corners of a sun's outline are twice as many.
+const KITES: usize = 8;
+
+/// The lights of a scene that fills a world.
+pub fn lights(
+    sources: &[PunctualLight],
+    units: LightUnits,
+    sky: Option<&Sky>,
+    world: &World,
+) -> Result<Lights> {
+    let (centre, size) = frame(world);
+    let sources: Vec<PunctualLight> = sources.iter().map(|light| in_watts(light, units)).collect();
+    let is_sun = |light: &&PunctualLight| matches!(light.kind, LightKind::Directional) && light.angle > 0.0;
+    let suns = sources.iter().filter(is_sun).map(|light| sun(light, centre, size));
+    let lamps = sources.iter().filter(|light| !is_sun(light)).map(|light| Lamp::of(light, centre, size));
+    let sky = match sky {
+        Some(sky) => {
+            let dome = dome(centre, size);
+            let sends = sky.radiosity(&dome, centre)?;
+            Some((dome, sends))
+        }
+        None => None,
+    };
+    Ok(Lights { lamps: lamps.collect(), suns: suns.collect(), sky })
+}
+
+/// The middle of a world, and how far it reaches.
+pub fn frame(world: &World) -> (DVec3, f64) {
+    let corners = || world.faces.iter().flat_map(|face| &face.corners);
+    let low = corners().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = corners().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    if low.x > high.x {
+        (DVec3::ZERO, 1.0)
+    } else {
+        ((low + high) / 2.0, (high - low).length().max(f64::MIN_POSITIVE))
+    }
+}
+
+fn in_watts(light: &PunctualLight, units: LightUnits) -> PunctualLight {
+    let factor = match (units, light.kind) {
+        (LightUnits::Radiometric, _) | (LightUnits::BlenderRaw, LightKind::Directional) => 1.0,
+        (LightUnits::Photometric, _) => 1.0 / LUMENS_PER_WATT,
+        (LightUnits::BlenderRaw, _) => 1.0 / (4.0 * PI),
+    };
+    PunctualLight { intensity: light.intensity.map(|i| i * factor), ..light.clone() }
+}
+
+/// A sun as a polygon far away, and what it sends: as much as parallel light of its intensity where it stands upright.
+fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> (Geometry, Rgb) {
+    let distance = FAR * size;
+    let middle = centre - light.direction * distance;
+    let (u, v) = light.direction.any_orthonormal_pair();
+    // A polygon of the disc's area.
+    let sides = 2.0 * KITES as f64;
+    let radius = distance * (light.angle / 2.0).tan() * (TAU / (sides * (TAU / sides).sin())).sqrt();
+    let at = |k: usize| {
+        let (sine, cosine) = (TAU * k as f64 / sides).sin_cos();
+        middle + (u * cosine + v * sine) * radius
+    };
+    let facing = |corners: [DVec3; 4]| {
+        let [a, b, c, d] = corners;
+        let corners = Corners::quad(corners);
+        if corners.double_area_vector().dot(light.direction) > 0.0 {
+            corners
+        } else {
+            Corners::quad([a, d, c, b])
+        }
+    };
+    let corners: Vec<Corners> =
+        (0..KITES).map(|k| facing([middle, at(2 * k), at(2 * k + 1), at(2 * k + 2)])).collect();
+    let elements: Vec<Element> = corners.iter().map(|&c| Element::new(c, MaterialId(0), FaceId(0))).collect();
+    let mut outline: Vec<DVec3> = (0..2 * KITES).map(at).collect();
+    if (outline[0] - middle).cross(outline[1] - middle).dot(light.direction) < 0.0 {
+        outline.reverse();
+    }
+    let (order, clusters) = hierarchy(&elements);
+    let seen: f64 = corners
+        .iter()
+        .map(|c| {
+            let from_centre: Vec<DVec3> = c.as_slice().iter().map(|&p| p - centre).collect();
+            contour::form_factor(&from_centre, -light.direction)
+        })
+        .sum();
+    let elements = order.into_iter().map(|i| elements[i]).collect();
+    (Geometry { elements, faces: vec![Face::new(outline)], clusters }, light.intensity.map(|e| e / seen))
+}
