@@ -5,6 +5,7 @@ mod cache;
 mod cli;
 mod crash;
 mod lightmaps;
+mod lights;
 mod parts;
 mod physics;
 mod stiff;
