@@ -7,6 +7,7 @@ use crate::report::Defect;
 use equilux_bake::equilibrium::added;
 use equilux_bake::equilibrium::endless::endless_light;
 use equilux_formats::{Error, Optics, Result, Rgb};
+use rayon::prelude::*;
 use std::path::Path;
 
 /// The mean over the scene's area, channel by channel.
@@ -29,13 +30,11 @@ pub fn rms_over_mean(placed: &Placed, values: &[Rgb], unit: &[Rgb]) -> f64 {
 
 /// How far the rows of the whole matrix are from summing to one.
 pub fn row_sum_defect(nodes: &[Node]) -> Defect {
-    let defects: Vec<f64> = nodes
-        .iter()
-        .flat_map(|node| {
-            let rows = 0..node.self_block.receivers();
-            rows.map(|i| (node.self_block.row_sum(i) + node.coupling.row_sum(i) - 1.0).abs())
-        })
-        .collect();
+    let of = |node: &Node| -> Vec<f64> {
+        let rows = 0..node.self_block.receivers();
+        rows.map(|i| (node.self_block.row_sum(i) + node.coupling.row_sum(i) - 1.0).abs()).collect()
+    };
+    let defects = nodes.par_iter().map(of).collect::<Vec<_>>().concat();
     let max = defects.iter().copied().fold(0.0, f64::max);
     Defect { max, mean: defects.iter().sum::<f64>() / defects.len().max(1) as f64 }
 }

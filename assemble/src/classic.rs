@@ -4,7 +4,7 @@ use crate::account::rms_over_mean;
 use crate::placed::Placed;
 use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise, subtract};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, block};
 use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
 use std::time::{Duration, Instant};
 
@@ -46,7 +46,7 @@ fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> 
     for &receivers in &everyone {
         let request = Request {
             world,
-            receivers,
+            receivers: Audience::Instance(receivers),
             senders: &everyone,
             columns: 0..world.nodes.len(),
             already: None,

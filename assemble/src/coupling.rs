@@ -7,11 +7,14 @@ use crate::hull::intruders;
 use crate::older::Older;
 use crate::placed::Placed;
 use equilux_bake::cached::{Made, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::keys::{CORRECTED, COUPLING, Known, placed_manifest};
+use equilux_bake::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
-use equilux_bake::treecode::{Request, Resolution, Timed, block};
+use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
+use rayon::prelude::*;
+use std::collections::HashSet;
+use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
 
@@ -67,6 +70,9 @@ impl Coupled {
     }
 }
 
+/// How many instances of the same part are compared with one, to find whose block is nearest to its own.
+const TWINS: usize = 8;
+
 /// Computes what couples the instances of a scene, or takes it from the cache.
 pub struct Coupler<'a> {
     /// The scene.
@@ -82,6 +88,24 @@ pub struct Coupler<'a> {
 }
 
 impl Coupler<'_> {
+    /// Read at once what the cache has of all blocks and of the light with what stands inside: [`Coupler::couple`] asks for
+    /// one after the other.
+    pub fn read_ahead(&self) {
+        let key = |k: usize, what: &str| self.store.target(&self.manifest(k, what).key());
+        let instances = (0..self.placed.instances.len()).into_par_iter();
+        let keys = instances.map(|k| (k, key(k, COUPLING), key(k, CORRECTED))).collect::<Vec<_>>();
+        let older =
+            keys.par_iter().flat_map(|&(k, ..)| [COUPLING, CORRECTED].map(|what| self.last_key(k, what)));
+        let older: Vec<Key> = older.flatten().collect();
+        self.store
+            .read_ahead::<Rows>(&[keys.iter().flat_map(|keys| [keys.1, keys.2]).collect(), older].concat());
+        let lights = keys.par_iter().map(|&(k, _, corrected)| {
+            let solver = self.placed.part_of(k).part.local.solver;
+            light_manifest(corrected.into(), &self.placed.paint_of(k), solver).key()
+        });
+        self.store.read_ahead::<BakedLight>(&lights.collect::<Vec<_>>());
+    }
+
     /// Couple one instance with all others. None if the monitor was stopped.
     pub fn couple(&self, instance: usize) -> Result<Option<Coupled>> {
         let intruders = self.intruders(instance);
@@ -94,19 +118,19 @@ impl Coupler<'_> {
         }
         let baked = &self.placed.part_of(instance).part.self_block;
         let own = corrected.as_ref().map_or(baked, |c: &Corrected| &c.self_block);
-        // A row that is full already sees nothing of other parts: nothing is searched for it.
-        let seen: Vec<f64> = (0..own.receivers()).map(|i| own.row_sum(i)).collect();
         let others: Vec<usize> = (0..self.placed.instances.len()).filter(|&l| l != instance).collect();
         let request = Request {
             world: &self.placed.world,
-            receivers: instance,
+            receivers: Audience::Instance(instance),
             senders: &others,
             columns: 0..self.placed.world.nodes.len(),
-            already: Some(&seen),
+            already: None,
             resolution: self.resolution,
             revision: None,
         };
-        let Some(found) = self.block(COUPLING, request, None)? else { return Ok(None) };
+        let Some(found) = self.block((instance, COUPLING), request, Some(own), None)? else {
+            return Ok(None);
+        };
         let Block { rows: coupling, origin, computed, time, .. } = found;
         Ok(Some(Coupled { coupling, origin, computed, corrected, time }))
     }
@@ -131,7 +155,7 @@ impl Coupler<'_> {
     fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Option<Corrected>> {
         let request = Request {
             world: &self.placed.world,
-            receivers: instance,
+            receivers: Audience::Instance(instance),
             senders: &[instance],
             columns: self.placed.world.nodes_of(instance),
             already: None,
@@ -141,7 +165,9 @@ impl Coupler<'_> {
         // The part alone is a scene too: what stands inside appeared in it.
         let part = &self.placed.part_of(instance).part;
         let alone = Older::alone(self.placed, instance, &intruders);
-        let Some(found) = self.block(CORRECTED, request, Some(alone))? else { return Ok(None) };
+        let Some(found) = self.block((instance, CORRECTED), request, None, Some(alone))? else {
+            return Ok(None);
+        };
         let Block { rows: self_block, origin, computed, key, time } = found;
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let optics = self.placed.paint_of(instance);
@@ -157,8 +183,13 @@ impl Coupler<'_> {
 
     /// The block that is asked for: from the cache, or from an older one as far as what changed since cannot matter, or
     /// from `otherwise`, or from the start.
-    fn block(&self, what: &str, request: Request, otherwise: Option<Older>) -> Result<Option<Block>> {
-        let instance = request.receivers;
+    fn block(
+        &self,
+        (instance, what): (usize, &str),
+        request: Request,
+        own: Option<&Rows>,
+        otherwise: Option<Older>,
+    ) -> Result<Option<Block>> {
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
         let (mut time, mut computed) = (Duration::ZERO, 0);
@@ -168,18 +199,50 @@ impl Coupler<'_> {
             let last = self.store.last_manifest(&name).and_then(|last| {
                 Older::last(self.placed, self.store, instance, &last, &manifest, request.columns.clone())
             });
-            let older = last.or(otherwise);
-            let in_place = older.as_ref().is_some_and(|older| older.has_columns(request.columns.clone()));
+            let twin = || self.twin(instance, what, &manifest, request.columns.clone());
+            let older = last.or_else(twin).or(otherwise);
             let revision = older.as_ref().map(Older::revision);
-            Ok(block(&Request { revision, ..request }, self.monitor).map(|timed| {
-                (time, computed) = (timed.time, timed.computed);
-                made(timed, older.as_ref().map(|older| older.key.filter(|_| in_place)))
-            }))
+            // A row that is full already sees nothing of other parts: nothing is searched for it.
+            let sums = |own: &Rows| (0..own.receivers()).map(|i| own.row_sum(i)).collect::<Vec<_>>();
+            let already = own.map(sums);
+            Ok(block(&Request { revision, already: already.as_deref(), ..request }, self.monitor).map(
+                |timed| {
+                    (time, computed) = (timed.time, timed.computed);
+                    made(timed, older.as_ref().map(|older| older.key))
+                },
+            ))
         })?;
         Ok(found.map(|(rows, origin)| {
             let key = self.store.target(&manifest.key());
             Block { rows, origin, key, computed, time }
         }))
+    }
+
+    /// The block of another instance of the same part that stands among much the same, as if that one were here: what one
+    /// sees of the other's surroundings and the other does not is what changed. Modular levels are full of these.
+    fn twin(
+        &self,
+        instance: usize,
+        what: &str,
+        wanted: &Manifest,
+        columns: Range<usize>,
+    ) -> Option<Older<'_>> {
+        let instances = &self.placed.instances;
+        let part = instances[instance].part;
+        let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(TWINS);
+        let parts = self.known();
+        let seen_by = |k: usize| seen_from(instances, &parts, k).map(|(_, seen)| seen);
+        let here: HashSet<Seen> = seen_by(instance).collect();
+        let common = |l: &usize| seen_by(*l).filter(|seen| here.contains(seen)).count();
+        let twin = before.max_by_key(common)?;
+        let manifest = self.manifest(twin, what);
+        Older::last(self.placed, self.store, instance, &manifest, wanted, columns)
+    }
+
+    /// The key under which the last block of this name lies.
+    fn last_key(&self, instance: usize, what: &str) -> Option<Key> {
+        let last = self.store.last_manifest(&self.name(instance, what))?;
+        Some(self.store.target(&last.key()))
     }
 
     fn name(&self, instance: usize, what: &str) -> String {
@@ -190,9 +253,12 @@ impl Coupler<'_> {
     }
 
     fn manifest(&self, instance: usize, what: &str) -> Manifest {
+        placed_manifest(&self.placed.instances, &self.known(), self.resolution, instance, what)
+    }
+
+    fn known(&self) -> Vec<Known> {
         let known = |part: &Baked| Known { key: part.key, senders: part.part.geometry.clusters.nodes() };
-        let parts: Vec<Known> = self.placed.parts.iter().map(known).collect();
-        placed_manifest(&self.placed.instances, &parts, self.resolution, instance, what)
+        self.placed.parts.iter().map(known).collect()
     }
 }
 

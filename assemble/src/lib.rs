@@ -14,6 +14,7 @@ pub mod elements_csv;
 pub mod exchange;
 mod explain;
 pub mod exposure;
+pub mod gather;
 pub mod gltf_export;
 pub mod hull;
 pub mod lightmap;

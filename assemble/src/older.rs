@@ -84,11 +84,6 @@ impl<'a> Older<'a> {
     pub fn revision(&self) -> Revision<'_> {
         Revision { old: &self.rows, senders: &self.senders, change: &self.change }
     }
-
-    /// Whether its columns are those of a block with these.
-    pub fn has_columns(&self, columns: Range<usize>) -> bool {
-        self.senders.iter().copied().eq(columns.map(|node| Some(node as u32)))
-    }
 }
 
 /// For each instance that was there the one that is there now: the same part in the same place.

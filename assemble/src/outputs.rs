@@ -1,12 +1,15 @@
 //! Everything a run leaves in `out/<scene>/`: pictures of rounds, of the end, of the elements, and the result as glTF.
 
+use crate::account::mean_over_area;
 use crate::camera::View;
 use crate::canvas::Canvas;
 use crate::classic::Classic;
 use crate::exchange::Outcome;
 use crate::exposure::Exposure;
+use crate::gather::{Gather, Lights};
 use crate::lightmap::atlas::Atlas;
-use crate::lightmap::{self, Lightmap, Nearest, Saved};
+use crate::lightmap::light::TexelLight;
+use crate::lightmap::{self, Lightmap, Saved};
 use crate::picture::{shade, wireframe, write_png};
 use crate::placed::Placed;
 use crate::run::{Job, Pictures};
@@ -105,8 +108,12 @@ fn write_lightmaps(
     monitor: &Monitor,
 ) -> Result<Option<Saved>> {
     let (Some(wanted), Some(atlas)) = (&job.lightmaps, light.atlas) else { return Ok(None) };
-    let nearest = Nearest::new(&light.placed.world.elements, &light.outcome.irradiance);
-    let lightmap = Lightmap::new(scene, atlas, |texels| nearest.irradiance(texels), monitor);
+    let (placed, outcome) = (light.placed, light.outcome);
+    let resolution = job.preparation.resolution;
+    let gather =
+        Gather::new(placed, &light.optics.emission, &outcome.radiosity, &Lights::default(), resolution);
+    let texel_light = TexelLight::new(&gather, mean_over_area(placed, &outcome.irradiance));
+    let lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
     lightmap::write(folder, &lightmap, wanted.units, exposure).map(Some)
 }
 

@@ -29,10 +29,14 @@ pub struct Relit {
 impl Placed {
     /// Place the parts.
     pub fn new(parts: Vec<Baked>, instances: Vec<Instance>) -> Self {
-        let geometry = |i: &Instance| (&parts[i.part.index()].part.geometry, i.placement);
-        let world = World::new(instances.iter().map(geometry));
+        let world = stage(&parts, &instances);
         let relit = instances.iter().map(|_| None).collect();
         Self { world, parts, instances, relit }
+    }
+
+    /// The world once more, to add things to.
+    pub fn stage(&self) -> World {
+        stage(&self.parts, &self.instances)
     }
 
     /// Find the own light of instances that are repainted, those of `which`.
@@ -72,4 +76,8 @@ impl Placed {
         optics.emission.iter_mut().for_each(|emission| *emission = emission.map(|e| e * scale));
         optics
     }
+}
+
+fn stage(parts: &[Baked], instances: &[Instance]) -> World {
+    World::new(instances.iter().map(|i| (&parts[i.part.index()].part.geometry, i.placement)))
 }

@@ -140,6 +140,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
 }
 
 fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
+    oven.read_ahead(&prepared.parts);
     let mut parts: Vec<Baked> = Vec::new();
     for part in &prepared.parts {
         let Some(baked) = oven.bake(part)? else { return Ok(None) };
@@ -151,5 +152,6 @@ fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
 fn couple(job: &Job, placed: &Placed, store: &Store, monitor: &Monitor) -> Result<Option<Vec<Coupled>>> {
     let resolution = job.preparation.resolution;
     let coupler = Coupler { placed, store, file: &job.scene, resolution, monitor };
+    coupler.read_ahead();
     (0..placed.instances.len()).map(|k| coupler.couple(k)).collect()
 }

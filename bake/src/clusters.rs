@@ -16,22 +16,27 @@ const COVERED: f64 = 0.1;
 
 /// The geometry of these elements and faces, elements put into the order of their hierarchy.
 pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
-    let mut builder = Builder { elements: &elements, order: vec![], clusters: vec![] };
-    let mut sides = face_sides(&elements);
+    let (order, clusters) = hierarchy(&elements);
+    Geometry { elements: order.iter().map(|&i| elements[i]).collect(), faces, clusters }
+}
+
+/// The hierarchy of these elements, and which of them comes where in it.
+pub fn hierarchy(elements: &[Element]) -> (Vec<usize>, ClusterTree) {
+    let mut builder = Builder { elements, order: vec![], clusters: vec![] };
+    let mut sides = face_sides(elements);
     if !sides.is_empty() {
         builder.halve_sides(&mut sides);
     }
     let Builder { order, clusters, .. } = builder;
-    let ordered: Vec<Element> = order.iter().map(|&i| elements[i]).collect();
-    let areas: Vec<f64> = ordered.iter().map(|e| e.area).collect();
-    let count = ordered.len() as u32;
+    let areas: Vec<f64> = order.iter().map(|&i| elements[i].area).collect();
+    let count = order.len() as u32;
     let number = |node: &Node| match *node {
         Node::Element(position) => position,
         Node::Cluster(number) => count + number,
     };
     let children = clusters.iter().map(|pair| [number(&pair[0]), number(&pair[1])]).collect();
     let clusters = ClusterTree::new(&areas, children).expect("the halves make a tree");
-    Geometry { elements: ordered, faces, clusters }
+    (order, clusters)
 }
 
 /// Elements of one side of one face.

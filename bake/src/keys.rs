@@ -69,7 +69,7 @@ pub struct Known {
 
 /// Another instance as one sees it: what a manifest of a block tells of it, so that of an older block it is known what it
 /// was made among.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Seen {
     /// Its part.
     pub part: Key,
@@ -133,18 +133,26 @@ pub fn placed_manifest(
     instance: usize,
     what: &str,
 ) -> Manifest {
-    let part_of = |instance: &Instance| parts[instance.part.index()];
-    let inverse = instances[instance].placement.inverse();
     let mut manifest = Manifest::new()
         .setting("block", what)
         .setting("kernel", KERNEL_VERSION)
         .setting("resolution", resolution)
-        .digest("the part", part_of(&instances[instance]).key);
-    for (number, other) in instances.iter().enumerate().filter(|&(n, _)| n != instance) {
-        let seen = Seen::new(part_of(other), inverse * other.placement);
-        manifest = manifest.detail(format!("instance {number} ({})", other.name), seen);
+        .digest("the part", parts[instances[instance].part.index()].key);
+    for (number, seen) in seen_from(instances, parts, instance) {
+        manifest = manifest.detail(format!("instance {number} ({})", instances[number].name), seen);
     }
     manifest
+}
+
+/// Every other instance by its number, as one instance sees it.
+pub fn seen_from<'a>(
+    instances: &'a [Instance],
+    parts: &'a [Known],
+    instance: usize,
+) -> impl Iterator<Item = (usize, Seen)> + 'a {
+    let inverse = instances[instance].placement.inverse();
+    let others = instances.iter().enumerate().filter(move |&(n, _)| n != instance);
+    others.map(move |(n, other)| (n, Seen::new(parts[other.part.index()], inverse * other.placement)))
 }
 
 /// The other instances that a manifest of a block tells of, by their numbers; none if it is not such a manifest.

@@ -7,13 +7,14 @@ use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
 use crate::prepare::PreparedPart;
-use crate::treecode::{Request, Resolution, block};
+use crate::treecode::{Audience, Request, Resolution, block};
 use crate::world::World;
 use equilux_formats::{
     BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Instance, Key,
     LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
+use rayon::prelude::*;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -49,6 +50,17 @@ pub struct Oven<'a> {
 }
 
 impl Oven<'_> {
+    /// Read at once what the cache has of these parts: [`Oven::bake`] asks for one after the other.
+    pub fn read_ahead(&self, parts: &[PreparedPart]) {
+        let of = |part: &PreparedPart| {
+            let key = geometry_manifest(part, self.resolution).key();
+            (key, light_manifest(key.into(), &part.optics, part.solver).key())
+        };
+        let (form_factors, lights): (Vec<Key>, Vec<Key>) = parts.par_iter().map(of).unzip();
+        self.store.read_ahead::<BakedGeometry>(&form_factors);
+        self.store.read_ahead::<BakedLight>(&lights);
+    }
+
     /// Bake one part, or take from the cache what is there. None if the monitor was stopped.
     pub fn bake(&self, part: &PreparedPart) -> Result<Option<Baked>> {
         let manifest = geometry_manifest(part, self.resolution);
@@ -59,7 +71,7 @@ impl Oven<'_> {
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
             let request = Request {
                 world: &world,
-                receivers: 0,
+                receivers: Audience::Instance(0),
                 senders: &[0],
                 columns: world.nodes_of(0),
                 already: None,

@@ -3,7 +3,7 @@
 use crate::form_factor::polygon::{Polygon, convex_hull};
 use crate::occluders::Occluders;
 use crate::planes;
-use equilux_formats::{Element, Face, FaceId, Geometry, MaterialId};
+use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
 use std::ops::Range;
 
@@ -83,7 +83,7 @@ impl World {
             faces.extend(geometry.faces.iter().map(|face| place_face(face, placement)));
             in_part.extend(planes::group(&geometry.faces));
             instance.resize(faces.len(), instances.len() as u32);
-            add_nodes(geometry, &elements[first_element..], &mut nodes);
+            add_nodes(&geometry.clusters, &elements[first_element..], &mut nodes);
             instances.push(Placed {
                 elements: first_element..elements.len(),
                 nodes: first_node..nodes.len(),
@@ -94,6 +94,36 @@ impl World {
         let occluders = Occluders::new(&faces);
         let parents = parents(&nodes);
         Self { elements, faces, planes, nodes, occluders, instances, parents }
+    }
+
+    /// Add senders that hide nothing: elements that lie in faces of the world. Returns their instance.
+    pub fn add_senders(&mut self, elements: &[Element], clusters: &ClusterTree) -> usize {
+        let (first_element, first_node) = (self.elements.len(), self.nodes.len());
+        self.elements.extend_from_slice(elements);
+        add_nodes(clusters, elements, &mut self.nodes);
+        self.instances.push(Placed {
+            elements: first_element..self.elements.len(),
+            nodes: first_node..self.nodes.len(),
+            root: clusters.root().map(|root| first_node + root),
+        });
+        self.parents = parents(&self.nodes);
+        self.instances.len() - 1
+    }
+
+    /// Add geometry that stands behind everything and hides nothing, such as a sky. Returns its instance.
+    pub fn add_far(&mut self, geometry: &Geometry) -> usize {
+        let first = self.faces.len() as u32;
+        self.faces.extend_from_slice(&geometry.faces);
+        // Each face has a plane of its own: nothing lies in it.
+        let Planes { in_scene, in_part, instance } = &mut self.planes;
+        let past = in_scene.iter().max().map_or(0, |last| last + 1);
+        in_scene.extend((0..).take(geometry.faces.len()).map(|n| past + n));
+        in_part.extend((0..).take(geometry.faces.len()));
+        instance.resize(self.faces.len(), self.instances.len() as u32);
+        self.occluders.of_face.resize(self.faces.len(), u32::MAX);
+        let in_world = |e: &Element| Element { face: FaceId(e.face.0 + first), ..*e };
+        let elements: Vec<Element> = geometry.elements.iter().map(in_world).collect();
+        self.add_senders(&elements, &geometry.clusters)
     }
 
     /// Whether two faces lie in one plane, so that neither lights or hides anything of the other. Within an instance
@@ -170,9 +200,8 @@ fn place_face(face: &Face, placement: DAffine3) -> Face {
 }
 
 /// Append the nodes of one instance, whose placed elements are given.
-fn add_nodes(geometry: &Geometry, elements: &[Element], nodes: &mut Vec<Node>) {
+fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
     let base = nodes.len();
-    let tree = &geometry.clusters;
     nodes.extend(elements.iter().map(element_node));
     // Clusters come before what they hold, so the last is complete first.
     let mut clusters: Vec<Node> = Vec::with_capacity(tree.nodes() - elements.len());

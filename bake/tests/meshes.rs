@@ -9,6 +9,7 @@ use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::form_factor::polygon::Polygon;
 use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon};
+use equilux_bake::outline::Plane;
 use equilux_bake::world::World;
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Surface};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
@@ -58,7 +59,8 @@ impl Scene {
                 continue;
             }
             let occluder = &self.world.faces[face as usize];
-            let Some(pyramid) = plain::hidden_pyramid(receiver.centroid, occluder, sender) else { continue };
+            let before = Plane { normal: sender.normal, point: sender.corners.as_slice()[0] };
+            let Some(pyramid) = plain::hidden_pyramid(receiver.centroid, occluder, before) else { continue };
             pieces = subtract(pieces, |piece, outside| pyramid.subtract_from(piece, outside));
         }
         for mesh in seen {

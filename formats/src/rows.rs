@@ -189,17 +189,44 @@ impl Rows {
 
     /// The (sender, form factor) pairs of one row that are not zero.
     pub fn row(&self, receiver: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let group = self.group_of(receiver);
-        let columns = self.columns_of(group);
-        let first = self.groups[group].value + (receiver - self.groups[group].receiver) * columns.len();
+        let columns = self.columns_of(self.group_of(receiver));
+        let first = self.range_of(receiver).start;
         let pairs =
             columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k, receiver)));
         pairs.filter(|&(_, value)| value != 0.0)
     }
 
+    /// The senders that any receiver sees, in no order, some of them often; with them those that are too small for a step.
+    pub fn senders_seen(&self) -> impl Iterator<Item = usize> + '_ {
+        self.columns.iter().map(|&column| column as usize)
+    }
+
     /// Σ_j F_ij: the fraction of receiver i's view that the senders fill.
     pub fn row_sum(&self, receiver: usize) -> f64 {
-        self.row(receiver).map(|(_, value)| value).sum()
+        let range = self.range_of(receiver);
+        match &self.values {
+            Values::Full(values) => values[range].iter().sum(),
+            Values::Steps { steps, unit } => {
+                steps[range].iter().map(|&step| u64::from(step)).sum::<u64>() as f64 * unit[receiver]
+            }
+        }
+    }
+
+    /// Number of form factors of one row that are not zero.
+    pub fn entries_of(&self, receiver: usize) -> usize {
+        let range = self.range_of(receiver);
+        match &self.values {
+            Values::Full(values) => values[range].iter().filter(|&&value| value != 0.0).count(),
+            Values::Steps { steps, .. } => steps[range].iter().filter(|&&step| step != 0).count(),
+        }
+    }
+
+    /// Where the numbers of a row are.
+    fn range_of(&self, receiver: usize) -> std::ops::Range<usize> {
+        let group = self.group_of(receiver);
+        let width = self.columns_of(group).len();
+        let first = self.groups[group].value + (receiver - self.groups[group].receiver) * width;
+        first..first + width
     }
 
     /// Irradiance Σ_j F_ij B_j of a group's receivers, W/m², from the radiosity of all senders. The result has one entry
@@ -208,17 +235,16 @@ impl Rows {
         let columns = self.columns_of(group);
         let seen: Vec<Rgb> = columns.iter().map(|&c| radiosity[c as usize]).collect();
         let first = self.groups[group].value;
-        let rows = self.receivers_of(group).enumerate();
-        rows.map(|(k, receiver)| {
-            let range = first + k * seen.len()..first + (k + 1) * seen.len();
-            match &self.values {
-                Values::Full(values) => dot(values[range].iter().copied(), &seen),
-                Values::Steps { steps, unit } => {
-                    dot(steps[range].iter().map(|&s| f64::from(s)), &seen).map(|sum| sum * unit[receiver])
-                }
+        let receivers = self.receivers_of(group);
+        let range = first..first + receivers.len() * seen.len();
+        match &self.values {
+            Values::Full(values) => products(&values[range], &seen, receivers.len(), |&value| value),
+            Values::Steps { steps, unit } => {
+                let mut sums = products(&steps[range], &seen, receivers.len(), |&step| f64::from(step));
+                sums.iter_mut().zip(&unit[receivers]).for_each(|(sum, unit)| *sum = sum.map(|s| s * unit));
+                sums
             }
-        })
-        .collect()
+        }
     }
 
     /// Σ_i w_i F_ij over a group's receivers i, for each sender j that any of them sees: the transposed block, for sums over
@@ -304,14 +330,56 @@ impl Rows {
     }
 }
 
-fn dot(row: impl Iterator<Item = f64>, seen: &[Rgb]) -> Rgb {
-    let mut sum = [0.0; 3];
-    for (value, b) in row.zip(seen) {
-        for channel in 0..3 {
-            sum[channel] += value * b[channel];
+/// Rows whose sums are added up side by side: as many chains of additions as hide their latency.
+const ABREAST: usize = 4;
+
+/// Each row times what is `seen`, added up from the first column to the last. `rows` follow one another in `values`.
+fn products<T>(values: &[T], seen: &[Rgb], rows: usize, number: impl Fn(&T) -> f64) -> Vec<Rgb> {
+    // The widest instructions that the machine has; products and sums stay what they are, so the bits do too.
+    pulp::Arch::new().dispatch(Products { values, seen, rows, number })
+}
+
+struct Products<'a, T, N> {
+    values: &'a [T],
+    seen: &'a [Rgb],
+    rows: usize,
+    number: N,
+}
+
+impl<T, N: Fn(&T) -> f64> pulp::NullaryFnOnce for Products<'_, T, N> {
+    type Output = Vec<Rgb>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<Rgb> {
+        // A fourth channel fills a vector register.
+        let seen: Vec<[f64; 4]> = self.seen.iter().map(|b| [b[0], b[1], b[2], 0.0]).collect();
+        let row = |k: usize| &self.values[k * seen.len()..(k + 1) * seen.len()];
+        let mut sums = Vec::with_capacity(self.rows);
+        let even = self.rows - self.rows % ABREAST;
+        for k in (0..even).step_by(ABREAST) {
+            let [a, b, c, d] = [row(k), row(k + 1), row(k + 2), row(k + 3)];
+            let mut four = [[0.0; 4]; ABREAST];
+            for ((((seen, a), b), c), d) in seen.iter().zip(a).zip(b).zip(c).zip(d) {
+                four[0] = plus(four[0], (self.number)(a), seen);
+                four[1] = plus(four[1], (self.number)(b), seen);
+                four[2] = plus(four[2], (self.number)(c), seen);
+                four[3] = plus(four[3], (self.number)(d), seen);
+            }
+            sums.extend(four);
         }
+        for k in even..self.rows {
+            sums.push(
+                seen.iter().zip(row(k)).fold([0.0; 4], |sum, (b, value)| plus(sum, (self.number)(value), b)),
+            );
+        }
+        sums.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
     }
-    sum
+}
+
+/// sum + value × b.
+#[inline(always)]
+fn plus(sum: [f64; 4], value: f64, b: &[f64; 4]) -> [f64; 4] {
+    [sum[0] + value * b[0], sum[1] + value * b[1], sum[2] + value * b[2], sum[3] + value * b[3]]
 }
 
 /// Add a row's values times its weights to the sums of its columns.

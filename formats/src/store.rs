@@ -14,7 +14,9 @@ use crate::error::{Error, Result};
 use crate::fingerprint::{Content, Digest, Key, Manifest};
 use crate::stored::Stored;
 use crate::whole_file::remove_left_over;
-use std::collections::HashSet;
+use rayon::prelude::*;
+use std::any::Any;
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -26,6 +28,8 @@ pub struct Store {
     folder: PathBuf,
     /// Clones share it.
     log: Arc<Mutex<Log>>,
+    /// What was read ahead of being asked for; clones share it.
+    ahead: Arc<Mutex<HashMap<PathBuf, Box<dyn Any + Send>>>>,
 }
 
 /// What happened since the folder was opened.
@@ -60,7 +64,7 @@ impl Store {
             )
         })?;
         remove_left_over(folder);
-        Ok(Self { folder: folder.into(), log: Arc::default() })
+        Ok(Self { folder: folder.into(), log: Arc::default(), ahead: Arc::default() })
     }
 
     /// Where a `kind` of file with this key lies, or would lie.
@@ -72,6 +76,9 @@ impl Store {
     pub fn load<T: Stored>(&self, key: &Key) -> Lookup<T> {
         let key = &self.target(key);
         let path = self.path(T::KIND, *key);
+        if let Some(found) = self.ahead().remove(&path).and_then(|read| read.downcast().ok()) {
+            return Lookup::Found(*found);
+        }
         if matches!(path.try_exists(), Ok(false)) {
             return Lookup::Missing;
         }
@@ -85,6 +92,19 @@ impl Store {
                 Lookup::Damaged(error)
             }
         }
+    }
+
+    /// Reads what lies under these keys on all threads, for [`Store::load`] to have it at hand, once. What is missing or
+    /// damaged is left to that.
+    pub fn read_ahead<T: Stored>(&self, keys: &[Key]) {
+        let keys: BTreeSet<Key> = keys.iter().map(|key| self.target(key)).collect();
+        keys.into_par_iter().for_each(|key| {
+            let path = self.path(T::KIND, key);
+            if let Ok(found) = read::<T>(&path, &key) {
+                self.note_use(path.clone());
+                self.ahead().insert(path, Box::new(found));
+            }
+        });
     }
 
     /// What was found damaged since the last call, in the order in which it was found, so that a person hears of it.
@@ -155,6 +175,10 @@ impl Store {
         if damages.iter().all(|known| known.file != error.file) {
             damages.push(error.clone());
         }
+    }
+
+    fn ahead(&self) -> MutexGuard<'_, HashMap<PathBuf, Box<dyn Any + Send>>> {
+        self.ahead.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn log(&self) -> MutexGuard<'_, Log> {

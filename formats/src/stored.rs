@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::fingerprint::Manifest;
 
 /// Something that has a file of its own in the cache.
-pub trait Stored: Sized {
+pub trait Stored: Sized + Send + 'static {
     /// The kind of its file.
     const KIND: Kind;
 

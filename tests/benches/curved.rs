@@ -7,7 +7,7 @@ use equilux_bake::form_factor::polygon::{Hides, Polygon, Pyramid};
 use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon, Span, Spans};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, Resolution, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Element, FaceId, Geometry};
 use equilux_tests::curved::{Triangle, sphere, torus};
@@ -171,7 +171,7 @@ impl Scene {
         let columns = 0..self.world.nodes.len();
         let request = Request {
             world: &self.world,
-            receivers: 0,
+            receivers: Audience::Instance(0),
             senders: &senders,
             columns,
             already: None,

@@ -7,6 +7,7 @@ mod edits;
 mod inside;
 mod instances;
 mod left_out;
+mod modular;
 mod overrides;
 mod reuse;
 mod split;

@@ -2,7 +2,7 @@
 
 use equilux_bake::form_factor::plain;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, Resolution, Timed, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, Timed, block};
 use equilux_bake::world::World;
 use equilux_formats::{Geometry, Part};
 use equilux_tests::curved::{Triangle, sphere, torus};
@@ -28,7 +28,7 @@ fn rows(world: &World, resolution: Resolution) -> Vec<Timed> {
     let of = |receivers: usize| {
         let request = Request {
             world,
-            receivers,
+            receivers: Audience::Instance(receivers),
             senders: &senders,
             columns: columns.clone(),
             already: None,

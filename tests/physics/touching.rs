@@ -1,7 +1,7 @@
 //! Corners that lie in the plane of a sender but for the last digit: cutting there leaves edges without a direction.
 
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, block};
 use equilux_bake::world::World;
 use equilux_formats::{Geometry, Part};
 use equilux_tests::curved::torus;
@@ -52,7 +52,7 @@ fn defect(things: &[Part]) -> f64 {
     let columns = 0..world.nodes.len();
     let request = Request {
         world: &world,
-        receivers: 0,
+        receivers: Audience::Instance(0),
         senders: &senders,
         columns,
         already: None,

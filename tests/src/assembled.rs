@@ -5,7 +5,7 @@ use equilux_assemble::exchange::{Goal, Method, Node, Outcome, exchange};
 use equilux_bake::equilibrium::{LocalSystem, default_solver};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::local_equilibrium;
-use equilux_bake::treecode::{Request, Resolution, block};
+use equilux_bake::treecode::{Audience, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Geometry, LocalEquilibrium, LocalSolver, Optics, Rgb, Rows};
 use glam::DAffine3;
@@ -35,7 +35,7 @@ impl Assembled {
         let rows = |receivers: usize, senders: &[usize], columns| {
             let request = Request {
                 world: &world,
-                receivers,
+                receivers: Audience::Instance(receivers),
                 senders,
                 columns,
                 already: None,

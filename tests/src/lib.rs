@@ -2,12 +2,15 @@
 //! known answers.
 
 pub mod assembled;
+pub mod averages;
 pub mod cases;
 pub mod corridors;
 pub mod curved;
 pub mod levels;
+pub mod lit;
 pub mod measure;
 pub mod model;
+pub mod modular;
 pub mod program;
 pub mod rooms;
 pub mod shapes;

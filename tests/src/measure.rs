@@ -5,7 +5,7 @@ use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::equilibrium::{added, apply, scaled};
 use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{Request, Resolution, block};
+use equilux_bake::treecode::{Audience, Request, Resolution, block};
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Geometry, Optics, Part, Rgb, Rows};
@@ -59,7 +59,7 @@ impl Level {
         for &receivers in &everyone {
             let request = Request {
                 world: &self.world,
-                receivers,
+                receivers: Audience::Instance(receivers),
                 senders: &everyone,
                 columns: 0..self.world.nodes.len(),
                 already: None,

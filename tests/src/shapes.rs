@@ -2,7 +2,7 @@
 
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, Resolution, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rows, Surface};
 use glam::{DAffine3, DVec3, dvec3};
@@ -115,6 +115,7 @@ pub fn alone(geometry: &Geometry) -> World {
 /// The block from one instance to others of a world; columns count through the nodes of all.
 pub fn coupling(world: &World, receivers: usize, senders: &[usize], resolution: Resolution) -> Rows {
     let columns = 0..world.nodes.len();
+    let receivers = Audience::Instance(receivers);
     let request = Request { world, receivers, senders, columns, already: None, resolution, revision: None };
     block(&request, &Monitor::default()).expect("nobody stops it").block
 }

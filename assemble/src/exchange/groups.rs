@@ -42,25 +42,10 @@ pub fn groups<'a>(nodes: &'a [Node<'a>]) -> Vec<Group<'a>> {
 
 /// The instances that a node receives from.
 fn seen_by(node: &Node, senders: &[Range<usize>]) -> Vec<usize> {
-    let seen_in = |group: usize| {
-        let weights = vec![[1.0]; node.coupling.receivers_of(group).len()];
-        let mut seen = vec![false; senders.len()];
-        // Senders come in order, so those of an instance together.
-        let mut from = 0;
-        for (sender, [sum]) in node.coupling.scatter_group(group, &weights) {
-            while senders[from].end <= sender {
-                from += 1;
-            }
-            seen[from] |= sum > 0.0;
-        }
-        seen
-    };
-    let all = (0..node.coupling.groups()).into_par_iter().map(seen_in);
-    let either = |mut a: Vec<bool>, b: Vec<bool>| {
-        a.iter_mut().zip(b).for_each(|(a, b)| *a |= b);
-        a
-    };
-    let seen = all.reduce(|| vec![false; senders.len()], either);
+    let mut seen = vec![false; senders.len()];
+    for sender in node.coupling.senders_seen() {
+        seen[senders.partition_point(|of| of.end <= sender)] = true;
+    }
     (0..seen.len()).filter(|&l| seen[l]).collect()
 }
 

@@ -150,7 +150,9 @@ impl<'a> Course<'a> {
                 break;
             }
         }
-        judged.error_bound = self.sharp_bound(&state, times);
+        if !(is_warm && rounds.is_empty()) {
+            judged.error_bound = self.sharp_bound(&state, times);
+        }
         if let Some(last) = rounds.last_mut() {
             last.judged = judged;
         }

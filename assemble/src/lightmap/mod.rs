@@ -16,6 +16,7 @@ pub mod estimate;
 pub mod grid;
 mod images;
 mod least_squares;
+pub mod light;
 mod listing;
 mod model;
 mod nearest;

@@ -10,9 +10,10 @@ use crate::exchange::Node;
 use equilux_bake::equilibrium::{added, apply, largest, scaled};
 use equilux_bake::treecode::MISSED;
 use equilux_formats::{ClusterTree, Precision, Rgb, Rows};
+use rayon::prelude::*;
 
 /// Sweeps end when they lower the bound by less than this share, and after so many.
-const SWEEPS: (f64, usize) = (1e-3, 200);
+const SWEEPS: (f64, usize) = (1e-2, 200);
 
 /// Whether entries may stand for clusters, in steps.
 pub fn is_compressed(nodes: &[Node]) -> bool {
@@ -42,7 +43,7 @@ impl<'a> Kept<'a> {
             let rounding = |i| Rounding::of([node.self_block, node.coupling], i);
             (0..node.self_block.receivers()).map(rounding).collect()
         };
-        Self { nodes, rounding: nodes.iter().map(rows).collect() }
+        Self { nodes, rounding: nodes.par_iter().map(rows).collect() }
     }
 
     /// What a row's sum is short of what the receiver sees, at most: what rounding takes from one entry it gives to the
@@ -95,7 +96,7 @@ impl<'a> Kept<'a> {
     /// ρF w at most, W/m², for w ≥ 0.
     fn reflected_at_most(&self, w: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
         let maxima: Vec<Vec<Rgb>> =
-            self.nodes.iter().zip(w).map(|(node, w)| maxima(node.clusters, w)).collect();
+            self.nodes.par_iter().zip(w).map(|(node, w)| maxima(node.clusters, w)).collect();
         self.reflected(&maxima, w)
     }
 
@@ -113,7 +114,7 @@ impl<'a> Kept<'a> {
             };
             (0..own.len()).map(row).collect()
         };
-        self.nodes.iter().enumerate().map(of).collect()
+        self.nodes.par_iter().enumerate().map(of).collect()
     }
 }
 
@@ -121,7 +122,7 @@ impl Rounding {
     fn of(blocks: [&Rows; 2], receiver: usize) -> Self {
         let steps = blocks.map(|block| block.step_of(receiver));
         // Between two entries that are kept lie entries too small for a step, which together are less than one.
-        let entries = blocks.map(|block| (2 * block.row(receiver).count() + 1) as f64);
+        let entries = blocks.map(|block| (2 * block.entries_of(receiver) + 1) as f64);
         Self { steps, total: steps[0] * entries[0] + steps[1] * entries[1] }
     }
 

@@ -6,7 +6,7 @@ use crate::exchange::Node;
 use crate::placed::Placed;
 use equilux_bake::equilibrium::{added, apply, scaled, subtract};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{EXACT, Request, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, block};
 use equilux_formats::{Rgb, Rows};
 use std::time::Duration;
 
@@ -80,7 +80,7 @@ fn exact_rows(placed: &Placed, clusters: &[Chosen], monitor: &Monitor) -> Option
     let everyone: Vec<usize> = (0..placed.instances.len()).collect();
     let request = Request {
         world,
-        receivers: instance,
+        receivers: Audience::Instance(instance),
         senders: &everyone,
         columns: 0..world.nodes.len(),
         already: Some(&seen),

@@ -8,19 +8,15 @@ use crate::report::inside;
 /// A row that sums to more than this counts light twice. Rows end within 1e-5 of 1, and steps round less.
 const TOO_MUCH: f64 = 1.0 + 1e-4;
 
+/// More sentences of one kind than this are made one.
+const FEW: usize = 4;
+
 /// Matrices of two placements that differ by less than this, relative to their largest number, place at the same place.
 const SAME_PLACE: f64 = 1e-6;
 
 /// All sentences.
 pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node]) -> Vec<String> {
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
-    let inside = coupled.iter().enumerate().filter_map(|(k, own)| {
-        let corrected = own.corrected.as_ref()?;
-        let inside: Vec<String> = corrected.intruders.iter().map(|&i| name(i)).collect();
-        let how =
-            if corrected.origin.is_reused() { "taken corrected from the cache" } else { "computed anew" };
-        Some(format!("inside {} is {}: its own block was {how}", name(k), inside.join(", ")))
-    });
     let twice = coinciding(placed).into_iter().map(|[a, b]| {
         format!("{} and {} coincide: the same part in the same place; remove one of them", name(a), name(b))
     });
@@ -36,7 +32,38 @@ pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node]) -> Vec<String
             )
         })
     });
-    inside.chain(twice).chain(overlapping).chain(inside::notes(placed)).collect()
+    standing_inside(placed, coupled)
+        .into_iter()
+        .chain(twice)
+        .chain(overlapping)
+        .chain(inside::notes(placed))
+        .collect()
+}
+
+/// What stands inside what: a sentence each, or, of more than a few, how many and the first of them.
+fn standing_inside(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
+    let name = |k: usize| format!("`{}`", placed.instances[k].name);
+    let corrected = coupled.iter().enumerate().filter_map(|(k, own)| Some((k, own.corrected.as_ref()?)));
+    let inside: Vec<(String, bool)> = corrected
+        .map(|(k, own)| {
+            let inside: Vec<String> = own.intruders.iter().map(|&i| name(i)).collect();
+            (format!("inside {} is {}", name(k), inside.join(", ")), own.origin.is_reused())
+        })
+        .collect();
+    if inside.len() <= FEW {
+        let how = |reused| if reused { "taken corrected from the cache" } else { "computed anew" };
+        return inside
+            .iter()
+            .map(|(what, reused)| format!("{what}: its own block was {}", how(*reused)))
+            .collect();
+    }
+    let named: Vec<&str> = inside.iter().take(FEW).map(|(what, _)| what.as_str()).collect();
+    let (reused, more) = (inside.iter().filter(|(_, reused)| *reused).count(), inside.len() - FEW);
+    vec![format!(
+        "{}, and so on in {more} more: of their own blocks {} were computed anew, {reused} taken corrected from the cache",
+        named.join("; "),
+        inside.len() - reused
+    )]
 }
 
 /// Pairs of instances of one part in one place.

@@ -182,10 +182,8 @@ fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
 /// Which instances a block's receivers see anything of.
 pub fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
     let mut seen = vec![false; placed.instances.len()];
-    let of: Vec<usize> =
-        (0..seen.len()).flat_map(|l| std::iter::repeat_n(l, placed.world.nodes_of(l).len())).collect();
-    for receiver in 0..coupled.coupling.receivers() {
-        coupled.coupling.row(receiver).for_each(|(sender, _)| seen[of[sender]] = true);
+    for sender in coupled.coupling.senders_seen() {
+        seen[placed.world.instance_of_node(sender)] = true;
     }
     seen
 }

@@ -6,6 +6,7 @@
 
 use super::contour;
 use super::polygon::{Polygon, Pyramid, Side, clip};
+use crate::outline::Plane;
 use crate::world::World;
 use equilux_formats::{Element, Face, FaceId};
 use glam::DVec3;
@@ -29,7 +30,8 @@ pub fn form_factor(world: &World, receiver: usize, sender: usize) -> f64 {
         if ends.iter().any(|&end| world.coplanar(end, FaceId::from_index(number))) {
             continue;
         }
-        let Some(pyramid) = hidden_pyramid(receiver.centroid, occluder, sender) else { continue };
+        let before = Plane { normal: sender.normal, point: sender.corners.as_slice()[0] };
+        let Some(pyramid) = hidden_pyramid(receiver.centroid, occluder, before) else { continue };
         let mut outside = Vec::with_capacity(pieces.len());
         for piece in pieces {
             pyramid.subtract_from(piece, &mut outside);
@@ -58,17 +60,17 @@ pub fn visible_side(receiver: &Element, sender: &Element) -> Option<Polygon> {
     }
 }
 
-/// The pyramid that `occluder` hides of `sender` from the point `x`; none if it lies behind the sender or is seen
-/// edge-on.
-pub fn hidden_pyramid(x: DVec3, occluder: &Face, sender: &Element) -> Option<Pyramid> {
+/// The pyramid that `occluder` hides of what lies in the plane `of` from the point `x` before it; none if it lies behind
+/// that plane or is seen edge-on.
+pub fn hidden_pyramid(x: DVec3, occluder: &Face, of: Plane) -> Option<Pyramid> {
     let polygon: Polygon = occluder.corners.iter().map(|&p| p - x).collect();
     let reach = polygon.iter().map(|p| p.length()).fold(0.0, f64::max);
     if occluder.normal.dot(polygon[0]).abs() <= IN_PLANE * reach {
         return None;
     }
     // Only what stands between x and the sender's plane hides anything of the sender.
-    let on_plane = sender.corners.as_slice()[0] - x;
-    let before_sender = |p: DVec3| sender.normal.dot(p - on_plane);
+    let on_plane = of.point - x;
+    let before_sender = |p: DVec3| of.normal.dot(p - on_plane);
     if polygon.iter().all(|&p| before_sender(p) <= IN_PLANE * reach) {
         return None;
     }

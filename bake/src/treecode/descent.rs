@@ -63,7 +63,8 @@ impl<'a> Descent<'a> {
         if self.monitor.stopped() {
             return Found::default();
         }
-        let viewers = Viewers::new(self.request.world, &self.request.world.elements[group.elements.clone()]);
+        let Request { world, receivers, .. } = *self.request;
+        let viewers = Viewers::new(world, &receivers.elements(world)[group.elements.clone()]);
         let narrowed =
             (viewers.diameter <= SMALLER * size).then(|| frontier.narrowed(self.request, &viewers));
         let (frontier, size) = match &narrowed {

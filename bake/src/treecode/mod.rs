@@ -21,7 +21,7 @@ mod viewers;
 use crate::monitor::Monitor;
 use crate::world::World;
 use descent::Descent;
-use equilux_formats::{Precision, Rows};
+use equilux_formats::{Element, Precision, Rows};
 use revision::Revision;
 use std::ops::Range;
 use std::time::Duration;
@@ -83,12 +83,32 @@ pub struct Timed {
     pub time: Duration,
 }
 
+/// Who receives.
+#[derive(Debug, Clone, Copy)]
+pub enum Audience<'a> {
+    /// The elements of an instance of the world.
+    Instance(usize),
+    /// Other points, at the centroids of these elements, each of which lies in a face of the world. The nearer two are in
+    /// this order the more of their search they share.
+    Points(&'a [Element]),
+}
+
+impl<'a> Audience<'a> {
+    /// The receivers' elements.
+    pub(crate) fn elements(self, world: &'a World) -> &'a [Element] {
+        match self {
+            Self::Instance(instance) => &world.elements[world.elements_of(instance)],
+            Self::Points(elements) => elements,
+        }
+    }
+}
+
 /// What is asked for: one block.
 pub struct Request<'a> {
     /// The geometry.
     pub world: &'a World,
-    /// The instance whose elements receive.
-    pub receivers: usize,
+    /// Who receives.
+    pub receivers: Audience<'a>,
     /// The instances that send.
     pub senders: &'a [usize],
     /// The range of nodes that columns count through.
@@ -107,12 +127,15 @@ pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
     if monitor.stopped() {
         return None;
     }
-    let block = Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
+    let older = request.revision.as_ref().filter(|older| older.is_in_place(&request.columns));
+    let unchanged = older.filter(|_| found.changed == 0).map(|older| older.old.clone());
+    let is_unchanged = unchanged.is_some();
+    let made = || Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
     Some(Timed {
-        block,
+        block: unchanged.unwrap_or_else(made),
         row_sums: found.sums,
         computed: found.computed,
-        is_unchanged: found.changed == 0,
+        is_unchanged,
         time: found.time,
     })
 }

@@ -1,9 +1,11 @@
 //! The receivers' side of the search: an instance's elements in a hierarchy, whose leaves are flat clusters of elements
 //! that look for their senders together.
 
+use super::Audience;
 use super::viewers::Viewers;
 use crate::form_factor::wide::Points;
 use crate::world::World;
+use equilux_formats::Element;
 use std::ops::Range;
 
 /// At most this many receivers search together: enough to share the search, few enough to share its outcome.
@@ -11,18 +13,34 @@ const TOGETHER: usize = 32;
 
 /// A node of the receivers' hierarchy.
 pub struct Group {
-    /// Its elements.
+    /// Its elements, by their numbers among the receivers.
     pub elements: Range<usize>,
     /// Its halves; none if it is a flat cluster.
     pub halves: Option<Box<[Group; 2]>>,
 }
 
-/// The hierarchy of an instance's receivers; none if it has no elements.
-pub fn receiver_groups(world: &World, instance: usize) -> Option<Group> {
-    let mut next = world.elements_of(instance).start;
+/// The hierarchy of receivers; none if there are none.
+pub fn receiver_groups(world: &World, audience: Audience) -> Option<Group> {
+    let instance = match audience {
+        Audience::Instance(instance) => instance,
+        Audience::Points([]) => return None,
+        Audience::Points(points) => return Some(halved(points, 0..points.len())),
+    };
+    let mut next = 0;
     let group = world.root_of(instance).map(|root| group(world, root, &mut next));
-    assert_eq!(next, world.elements_of(instance).end, "every element receives");
+    assert_eq!(next, world.elements_of(instance).len(), "every element receives");
     group
+}
+
+/// The group of points in a range, halved down to flat clusters.
+fn halved(points: &[Element], range: Range<usize>) -> Group {
+    let own = &points[range.clone()];
+    let is_flat = own.iter().all(|e| e.face == own[0].face && e.normal.dot(own[0].normal) > 0.0);
+    let halves = (!is_flat || own.len() > TOGETHER).then(|| {
+        let middle = range.start + own.len() / 2;
+        Box::new([halved(points, range.start..middle), halved(points, middle..range.end)])
+    });
+    Group { elements: range, halves }
 }
 
 /// The group of a node whose first element is `next`, which moves on past its last. Elements are numbered as the
@@ -49,8 +67,7 @@ pub struct Receivers {
 
 impl Receivers {
     /// The receivers that a run of elements on one side of one face makes.
-    pub fn new(world: &World, elements: Range<usize>) -> Self {
-        let elements = &world.elements[elements];
+    pub fn new(world: &World, elements: &[Element]) -> Self {
         let points = elements.iter().map(|e| e.centroid).collect();
         Self { points: Points::new(points, elements[0].normal), viewers: Viewers::new(world, elements) }
     }

@@ -74,9 +74,15 @@ impl Change {
 }
 
 impl Revision<'_> {
+    /// Whether the old block's numbers of senders are those of a block with these columns, as far as it has entries.
+    pub fn is_in_place(&self, columns: &Range<usize>) -> bool {
+        let stays = |column: usize| self.senders[column] == Some((columns.start + column) as u32);
+        self.old.senders() == columns.len() && self.old.senders_seen().all(stays)
+    }
+
     /// The rows of some receivers that see nothing that changed; none if a sender of theirs is gone.
     pub fn untouched(&self, request: &Request, elements: &Range<usize>) -> Option<RowGroup> {
-        let group = self.old.group_of(elements.start - request.world.elements_of(request.receivers).start);
+        let group = self.old.group_of(elements.start);
         let (columns, values) = self.old.values_of(group);
         let sender = |&column: &u32| self.senders[column as usize];
         let senders = columns.iter().map(sender).collect::<Option<Vec<u32>>>()?;
@@ -112,7 +118,7 @@ impl<'a> Revised<'a> {
         elements: &Range<usize>,
     ) -> Self {
         let world = request.world;
-        let group = revision.old.group_of(elements.start - world.elements_of(request.receivers).start);
+        let group = revision.old.group_of(elements.start);
         let (columns, values) = revision.old.values_of(group);
         let (mut kept, mut dropped) = (HashMap::new(), HashSet::new());
         for (place, &column) in columns.iter().enumerate() {

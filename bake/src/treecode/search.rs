@@ -86,12 +86,12 @@ enum Taken {
 impl<'a> Search<'a> {
     /// The rows of some elements on one side of one face, and their sums.
     pub fn rows(request: &'a Request<'a>, elements: Range<usize>, frontier: &Frontier<'a>) -> Found {
-        let own = request.world.elements_of(request.receivers).start;
         let missing: Vec<f64> = match request.already {
-            Some(seen) => elements.clone().map(|i| 1.0 - seen[i - own]).collect(),
+            Some(seen) => seen[elements.clone()].iter().map(|seen| 1.0 - seen).collect(),
             None => vec![1.0; elements.len()],
         };
-        let receivers = Receivers::new(request.world, elements.clone());
+        let receivers =
+            Receivers::new(request.world, &request.receivers.elements(request.world)[elements.clone()]);
         let revised = request.revision.as_ref();
         if let Some(group) =
             revised.filter(|_| frontier.is_empty()).and_then(|r| r.untouched(request, &elements))

@@ -1,0 +1,69 @@
+//! Surfaces that shine by themselves as few large polygons. In go the placed parts and the emission of their elements; out
+//! come senders that cover the elements that emit, none of them holding two kinds of light.
+
+use crate::placed::Placed;
+use equilux_bake::clusters::hierarchy;
+use equilux_formats::{ClusterTree, Corners, Element, Rgb};
+
+/// Senders, their hierarchy, and what each sends.
+pub struct Surfaces {
+    /// Polygons in faces of the world.
+    pub elements: Vec<Element>,
+    /// The hierarchy of the elements.
+    pub clusters: ClusterTree,
+    /// W/m², one row an element.
+    pub emission: Vec<Rgb>,
+}
+
+/// All that emits.
+pub fn surfaces(placed: &Placed, emission: &[Rgb]) -> Surfaces {
+    let mut found: Vec<(Element, Rgb)> = Vec::new();
+    for k in 0..placed.instances.len() {
+        let clusters = &placed.part_of(k).part.geometry.clusters;
+        let own = &emission[placed.world.elements_of(k)];
+        let mut open: Vec<usize> = clusters.root().into_iter().collect();
+        while let Some(node) = open.pop() {
+            match uniform(clusters, own, node) {
+                Some([0.0, 0.0, 0.0]) => {}
+                Some(sends) if let Some(polygon) = polygon(placed, k, node) => found.push((polygon, sends)),
+                _ => {
+                    let children =
+                        clusters.children_of(node).expect("an element is a polygon of one emission");
+                    open.extend(children.map(|child| child as usize));
+                }
+            }
+        }
+    }
+    let elements: Vec<Element> = found.iter().map(|(element, _)| *element).collect();
+    if elements.is_empty() {
+        let clusters = ClusterTree::new(&[], vec![]).expect("nothing is a tree");
+        return Surfaces { elements, clusters, emission: vec![] };
+    }
+    let (order, clusters) = hierarchy(&elements);
+    let (elements, emission) = order.into_iter().map(|i| found[i]).unzip();
+    Surfaces { elements, clusters, emission }
+}
+
+/// The emission of everything in a node, if it is the same.
+fn uniform(clusters: &ClusterTree, emission: &[Rgb], node: usize) -> Option<Rgb> {
+    let Some([left, right]) = clusters.children_of(node) else { return Some(emission[node]) };
+    let left = uniform(clusters, emission, left as usize)?;
+    (uniform(clusters, emission, right as usize)? == left).then_some(left)
+}
+
+/// A node of an instance as an element, if it is a polygon of three or four corners.
+fn polygon(placed: &Placed, instance: usize, node: usize) -> Option<Element> {
+    let world = &placed.world;
+    let number = world.nodes_of(instance).start + node;
+    if let Some(element) = world.element_of(number) {
+        return Some(world.elements[element]);
+    }
+    let node = &world.nodes[number];
+    let side = node.side?;
+    let corners = match node.polygon[..] {
+        [a, b, c] => Corners::triangle([a, b, c]),
+        [a, b, c, d] => Corners::quad([a, b, c, d]),
+        _ => return None,
+    };
+    Some(Element::new(corners, side.material, side.face))
+}

@@ -1,0 +1,148 @@
+//! Light without extent: points, spots and parallel light. What a convex polygon receives is exact: every occluder hides
+//! a pyramid from the light, what is left of the polygon after all pyramids is lit, and a point of intensity I sends
+//! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
+
+use super::average::{Piece, centre};
+use equilux_bake::form_factor::plain::hidden_pyramid;
+use equilux_bake::form_factor::polygon::Polygon;
+use equilux_bake::outline::Plane;
+use equilux_bake::shaft::Shaft;
+use equilux_bake::visibility::Inside;
+use equilux_bake::world::World;
+use equilux_formats::{FaceId, LightKind, PunctualLight, Rgb};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A light without extent.
+#[derive(Debug, Clone)]
+pub struct Lamp {
+    /// Where it stands, metres; parallel light stands very far away.
+    pub position: DVec3,
+    /// Intensity, W/sr, linear RGB.
+    pub intensity: Rgb,
+    /// Where it looks, and its cone, if it is a spot.
+    pub cone: Option<Cone>,
+}
+
+/// The cone of a spot, as KHR_lights_punctual has it.
+#[derive(Debug, Clone)]
+pub struct Cone {
+    direction: DVec3,
+    /// Slope and offset of the falloff in the cosine.
+    scale: f64,
+    offset: f64,
+}
+
+/// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-7.
+const FAR: f64 = 1e7;
+
+/// Polygons that a spot's edge may pass through are cut this often along each side.
+const CUTS: usize = 4;
+
+impl Lamp {
+    /// The lamp of a light of a scene around `centre` of this `size`, metres.
+    pub fn of(light: &PunctualLight, centre: DVec3, size: f64) -> Self {
+        let Self { position, intensity, cone } =
+            Self { position: light.position, intensity: light.intensity, cone: None };
+        match light.kind {
+            LightKind::Point => Self { position, intensity, cone },
+            LightKind::Spot { inner, outer } => {
+                let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-9);
+                let cone = Cone { direction: light.direction, scale, offset: -outer.cos() * scale };
+                Self { position, intensity, cone: Some(cone) }
+            }
+            LightKind::Directional => {
+                let distance = FAR * size;
+                Self {
+                    position: centre - light.direction * distance,
+                    intensity: intensity.map(|lux| lux * distance * distance),
+                    cone,
+                }
+            }
+        }
+    }
+
+    /// The average irradiance of pieces, W/m².
+    pub fn irradiance(&self, world: &World, pieces: &[Piece]) -> Vec<Rgb> {
+        let root = world.occluders.tree.root();
+        pieces.par_iter().map(|piece| self.over(world, root, piece)).collect()
+    }
+
+    fn over(&self, world: &World, root: Option<usize>, piece: &Piece) -> Rgb {
+        let dark = [0.0; 3];
+        if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 || piece.area <= 0.0 {
+            return dark;
+        }
+        let (middle, _) = centre(piece.corners, piece.normal);
+        let Some(face) = piece.plane.face_at(middle) else { return dark };
+        let mut lit: Vec<Polygon> = vec![piece.corners.iter().map(|&p| p - self.position).collect()];
+        let plane = Plane { normal: piece.normal, point: piece.corners[0] };
+        self.occluders(world, root, piece, &mut |number| {
+            if world.coplanar(face, FaceId(number)) {
+                return;
+            }
+            let Some(pyramid) = hidden_pyramid(self.position, &world.faces[number as usize], plane) else {
+                return;
+            };
+            let mut outside = Vec::with_capacity(lit.len());
+            lit.drain(..).for_each(|left| pyramid.subtract_from(left, &mut outside));
+            lit = outside;
+        });
+        let sent: f64 = lit.iter().map(|polygon| self.share(polygon, piece.normal)).sum();
+        self.intensity.map(|i| i * sent / piece.area)
+    }
+
+    /// Call `visit` with the number of every face that may stand between the light and a piece.
+    fn occluders(&self, world: &World, root: Option<usize>, piece: &Piece, visit: &mut impl FnMut(u32)) {
+        let low = piece.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = piece.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let mut shaft = Shaft::between((self.position, self.position), (low, high));
+        shaft.bound(piece.corners[0], -piece.normal);
+        let tree = &world.occluders.tree;
+        let mut open: Vec<usize> = root.into_iter().collect();
+        while let Some(index) = open.pop() {
+            let node = tree.node(index);
+            if shaft.misses_box(node.low, node.high) {
+                continue;
+            }
+            match tree.inside(index) {
+                Inside::Boxes(pair) => open.extend(pair),
+                Inside::Things(things) => {
+                    for &thing in things {
+                        let occluder = &world.occluders.all[thing as usize];
+                        if !shaft.misses_box(occluder.low, occluder.high) {
+                            occluder.faces.iter().for_each(|&face| visit(face));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// ∫ I(ω)/I dω over a polygon as the light sees it.
+    fn share(&self, polygon: &[DVec3], normal: DVec3) -> f64 {
+        let Some(cone) = &self.cone else { return solid_angle(polygon) };
+        let pieces = super::average::cells(polygon, CUTS);
+        pieces.iter().map(|cell| solid_angle(cell) * cone.falloff(centre(cell, normal).0)).sum()
+    }
+}
+
+impl Cone {
+    /// The share of the intensity in a direction, of any length.
+    fn falloff(&self, to: DVec3) -> f64 {
+        let share = self.direction.dot(to) / to.length() * self.scale + self.offset;
+        share.clamp(0.0, 1.0).powi(2)
+    }
+}
+
+/// The solid angle of a convex polygon seen from the origin, sr.
+fn solid_angle(polygon: &[DVec3]) -> f64 {
+    let a = polygon[0];
+    let triangle = |b: DVec3, c: DVec3| {
+        let (la, lb, lc) = (a.length(), b.length(), c.length());
+        // By differences, so that small polygons far away keep their digits.
+        let volume = a.dot((b - a).cross(c - a)).abs();
+        2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
+    };
+    polygon.windows(2).skip(1).map(|edge| triangle(edge[0], edge[1])).sum()
+}

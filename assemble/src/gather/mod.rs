@@ -1,0 +1,186 @@
+//! Light where somebody asks for it: the irradiance of pieces of surface from a scene in equilibrium.
+//!
+//! What shines by itself is seen sharply: its form factors are exact and averaged over the piece. What is reflected is
+//! smooth: its irradiance is gathered at points, with the same exact visibility.
+//!
+//!     surfaces that shine, sun  → direct, averaged over the piece
+//!     points and spots of light → direct, clipped exactly
+//!     radiosity ρH of all elements, sky → reflected, at a point
+
+pub mod average;
+pub mod faces;
+mod glowing;
+pub mod lamps;
+pub mod sky;
+
+use crate::placed::Placed;
+use equilux_bake::equilibrium::{added, apply, subtract};
+use equilux_bake::monitor::Monitor;
+use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
+use equilux_bake::visibility::Inside;
+use equilux_bake::world::World;
+use equilux_formats::{Corners, Element, FaceId, Geometry, MaterialId, Rgb};
+use faces::Faces;
+use glam::DVec3;
+use lamps::Lamp;
+
+/// A scene in equilibrium, ready to be asked.
+pub struct Gather {
+    world: World,
+    faces: Faces,
+    /// The instances of the scene.
+    scene: Vec<usize>,
+    /// What they reflect, W/m²; zero for what was added.
+    reflected: Vec<Rgb>,
+    /// The instances added for what shines sharply: surfaces and suns.
+    glowing: Vec<usize>,
+    /// The instance of the sky, if there is one.
+    sky: Option<usize>,
+    /// What all that was added sends, W/m²; zero for the scene.
+    shining: Vec<Rgb>,
+    lamps: Vec<Lamp>,
+    resolution: Resolution,
+}
+
+/// What shines into a scene from outside its surfaces.
+#[derive(Debug, Clone, Default)]
+pub struct Lights {
+    /// Points, spots and parallel light.
+    pub lamps: Vec<Lamp>,
+    /// Suns: polygons far away, and what they send, W/m².
+    pub suns: Vec<(Geometry, Rgb)>,
+    /// The sky's polygons, and what each sends, W/m².
+    pub sky: Option<(Geometry, Vec<Rgb>)>,
+}
+
+impl Lights {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.lamps.is_empty() && self.suns.is_empty() && self.sky.is_none()
+    }
+}
+
+impl Gather {
+    /// The placed scene with these lights. `emission` and `radiosity` are of all elements, W/m²; of a scene without
+    /// equilibrium as yet both are zero.
+    pub fn new(
+        placed: &Placed,
+        emission: &[Rgb],
+        radiosity: &[Rgb],
+        lights: &Lights,
+        resolution: Resolution,
+    ) -> Self {
+        let mut world = placed.stage();
+        let scene: Vec<usize> = (0..world.instances()).collect();
+        let faces = Faces::of(&world);
+        let reflected: Vec<Rgb> = radiosity.iter().zip(emission).map(|(&b, &e)| subtract(b, e)).collect();
+        let mut reflected: Vec<Rgb> = placed
+            .split(&reflected)
+            .iter()
+            .enumerate()
+            .flat_map(|(k, own)| placed.part_of(k).part.geometry.clusters.means(own))
+            .collect();
+        let mut shining = vec![[0.0; 3]; reflected.len()];
+        let mut glowing = Vec::new();
+        let surfaces = glowing::surfaces(placed, emission);
+        if !surfaces.elements.is_empty() {
+            glowing.push(world.add_senders(&surfaces.elements, &surfaces.clusters));
+            shining.extend(surfaces.clusters.means(&surfaces.emission));
+        }
+        for (sun, sends) in &lights.suns {
+            glowing.push(world.add_far(sun));
+            shining.resize(world.nodes.len(), *sends);
+        }
+        let sky = lights.sky.as_ref().map(|(dome, sends)| {
+            shining.extend(dome.clusters.means(sends));
+            world.add_far(dome)
+        });
+        reflected.resize(world.nodes.len(), [0.0; 3]);
+        let lamps = lights.lamps.clone();
+        Self { world, faces, scene, reflected, glowing, sky, shining, lamps, resolution }
+    }
+
+    /// The faces of the scene, to find the one that a point lies in.
+    pub fn faces(&self) -> &Faces {
+        &self.faces
+    }
+
+    /// The world with everything in it.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The lamps.
+    pub fn lamps(&self) -> &[Lamp] {
+        &self.lamps
+    }
+
+    /// Irradiance at points from surfaces that shine and from suns, W/m²; exact.
+    pub fn glow(&self, points: &[Element]) -> Vec<Rgb> {
+        self.from(points, &self.glowing, &self.shining, EXACT)
+    }
+
+    /// Irradiance at points from all that reflects, and from the sky, W/m².
+    pub fn reflected(&self, points: &[Element]) -> Vec<Rgb> {
+        let reflected = self.from(points, &self.scene, &self.reflected, self.resolution);
+        let sky = self.from(points, self.sky.as_slice(), &self.shining, EXACT);
+        reflected.into_iter().zip(sky).map(|(a, b)| added(a, b)).collect()
+    }
+
+    /// Whether anything with corners on the lit side of the plane through `point` may lie in a box.
+    pub fn anything_before(&self, (low, high): (DVec3, DVec3), point: DVec3, normal: DVec3) -> bool {
+        let slack = 1e-6 * (high - low).length();
+        let before = |corner: &DVec3| normal.dot(*corner - point) > slack;
+        let tree = &self.world.occluders.tree;
+        let mut open: Vec<usize> = tree.root().into_iter().collect();
+        while let Some(index) = open.pop() {
+            let node = tree.node(index);
+            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
+                continue;
+            }
+            match tree.inside(index) {
+                Inside::Boxes(pair) => open.extend(pair),
+                Inside::Things(things) => {
+                    let near =
+                        things.iter().map(|&thing| &self.world.occluders.all[thing as usize]).any(|o| {
+                            o.low.cmple(high).all() && o.high.cmpge(low).all() && o.corners.iter().any(before)
+                        });
+                    if near {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    fn from(&self, points: &[Element], senders: &[usize], sent: &[Rgb], resolution: Resolution) -> Vec<Rgb> {
+        if senders.is_empty() {
+            return vec![[0.0; 3]; points.len()];
+        }
+        let request = Request {
+            world: &self.world,
+            receivers: Audience::Points(points),
+            senders,
+            columns: 0..self.world.nodes.len(),
+            already: None,
+            resolution,
+            revision: None,
+        };
+        // Each call is short: whoever calls looks whether to stop.
+        let found = block(&request, &Monitor::default()).expect("nobody stops it");
+        apply(&found.block, sent)
+    }
+}
+
+/// A point that receives, on one side of a face of the world.
+pub fn receiver(point: DVec3, normal: DVec3, face: FaceId) -> Element {
+    Element {
+        corners: Corners::triangle([point; 3]),
+        normal,
+        centroid: point,
+        area: 0.0,
+        material: MaterialId(0),
+        face,
+    }
+}

@@ -1,0 +1,63 @@
+//! Irradiance averaged over given elements, as texels of that size have it.
+
+use crate::lit::Lit;
+use equilux_assemble::gather::average::{Piece, centre};
+use equilux_assemble::gather::faces::{Faces, Plane};
+use equilux_assemble::gather::{Gather, Lights};
+use equilux_bake::treecode::Resolution;
+use equilux_formats::{Element, Rgb};
+use glam::DVec3;
+
+/// The average irradiance of each element, W/m²: direct light exact over the element, reflected light at its centroid.
+/// The elements lie in the faces of the scene that is lit, or, where they come from a finer mesh of it, near them: then
+/// they count as if they lay there.
+pub fn averages(lit: &Lit, elements: &[Element], resolution: Resolution) -> Vec<Rgb> {
+    let (emission, radiosity) = (&lit.optics.emission, &lit.outcome.radiosity);
+    let gather = Gather::new(&lit.placed, emission, radiosity, &Lights::default(), resolution);
+    let mean = mean(&lit.outcome.irradiance);
+    let projected: Vec<Projected> = elements.iter().map(|e| Projected::new(e, gather.faces(), lit)).collect();
+    let pieces: Vec<Piece> = projected
+        .iter()
+        .map(|p| Piece { corners: &p.corners, normal: p.normal, area: p.area, plane: &p.plane })
+        .collect();
+    let direct = gather.direct(&pieces, mean);
+    let reflected = gather.reflected_over(&pieces, mean);
+    direct.iter().zip(reflected).map(|(d, r)| [d[0] + r[0], d[1] + r[1], d[2] + r[2]]).collect()
+}
+
+/// An element in the plane of a face of the scene.
+struct Projected<'a> {
+    corners: Vec<DVec3>,
+    normal: DVec3,
+    area: f64,
+    plane: Plane<'a>,
+}
+
+impl<'a> Projected<'a> {
+    fn new(element: &Element, faces: &'a Faces, lit: &Lit) -> Self {
+        let alike = lit.placed.world.elements.iter().filter(|e| e.normal.dot(element.normal) > 0.99);
+        let distance = |e: &&Element| outside(e, element.centroid);
+        let near =
+            alike.min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a face that looks that way");
+        let onto = |p: &DVec3| *p - near.normal * near.normal.dot(*p - near.centroid);
+        let corners: Vec<DVec3> = element.corners.as_slice().iter().map(onto).collect();
+        let (middle, area) = centre(&corners, near.normal);
+        Self { corners, normal: near.normal, area, plane: faces.in_plane(middle, near.normal) }
+    }
+}
+
+/// How far a point is from an element, at most.
+fn outside(element: &Element, point: DVec3) -> f64 {
+    let corners = element.corners.as_slice();
+    let beyond = |i: usize| {
+        let (a, b) = (corners[i], corners[(i + 1) % corners.len()]);
+        (b - a).cross(element.normal).normalize_or_zero().dot(point - a)
+    };
+    let aside = (0..corners.len()).map(beyond).fold(0.0, f64::max);
+    aside + element.normal.dot(point - element.centroid).abs()
+}
+
+fn mean(values: &[Rgb]) -> Rgb {
+    let sum = values.iter().fold([0.0; 3], |sum: Rgb, v| [sum[0] + v[0], sum[1] + v[1], sum[2] + v[2]]);
+    sum.map(|s| s / values.len() as f64)
+}
