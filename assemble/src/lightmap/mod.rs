@@ -19,7 +19,6 @@ mod least_squares;
 pub mod light;
 mod listing;
 mod model;
-mod nearest;
 mod overlap;
 pub mod pack;
 pub mod patch;
@@ -29,7 +28,6 @@ pub mod texels;
 mod write;
 
 pub use images::Units;
-pub use nearest::Nearest;
 pub use write::{Saved, write};
 
 use atlas::{Atlas, Tile};
