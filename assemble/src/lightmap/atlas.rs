@@ -73,6 +73,13 @@ pub struct Tile {
     pub size: [u32; 2],
 }
 
+impl Tile {
+    /// How many texels its rectangle has.
+    pub fn texels(&self) -> usize {
+        self.size[0] as usize * self.size[1] as usize
+    }
+}
+
 impl Atlas {
     /// The atlas of `scene` with texels of `texel_size` metres, or of a size that makes about 1024² of them. Fails where
     /// that would be more than images can hold.

@@ -4,12 +4,19 @@ use super::pack::Spot;
 use super::{Lightmap, Units};
 use serde_json::{Value, json};
 
-/// A file with an image of the lightmap.
+/// A file in memory.
 pub struct File {
     /// Its name.
     pub name: String,
     /// Its contents.
     pub bytes: Vec<u8>,
+}
+
+impl File {
+    /// A file of this name and these contents.
+    pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
+        Self { name: name.into(), bytes }
+    }
 }
 
 /// The list. `images`: for each image of the lightmap its EXR and its PNG. The EXRs' numbers are those in `units` times

@@ -3,8 +3,8 @@
 //! In go a scene's parts and instances, and a function that gives texels their irradiance; out come images, a model that
 //! carries them, and a list of what lies where in them.
 //!
-//!     parts → sides → charts → grids → atlas        once for each part and scale
-//!     atlas × instances → texels → irradiance → light around charts → seams → images, model, list
+//! Once for each part and scale: part → sides → charts → grids → atlas. Then: atlas × instances → texels → irradiance →
+//! light around charts → seams → images, models, list.
 
 pub mod atlas;
 mod authored;
@@ -15,10 +15,10 @@ mod dilate;
 pub mod estimate;
 pub mod grid;
 mod images;
+mod least_squares;
 pub mod light;
 mod listing;
 mod model;
-mod nearest;
 mod overlap;
 pub mod pack;
 pub mod patch;
@@ -28,7 +28,6 @@ pub mod texels;
 mod write;
 
 pub use images::Units;
-pub use nearest::Nearest;
 pub use write::{Saved, write};
 
 use atlas::{Atlas, Tile};
@@ -64,7 +63,7 @@ pub struct Lightmap<'a> {
 }
 
 /// What of its chart a texel holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Holds {
     /// Nothing, and it is not near.
     Nothing,
@@ -86,45 +85,8 @@ impl<'a> Lightmap<'a> {
         monitor: &Monitor,
     ) -> Self {
         let tiles = atlas.tiles();
-        let bands: Vec<(usize, Range<u32>)> = tiles
-            .iter()
-            .enumerate()
-            .flat_map(|(number, tile)| bands(tile.size).map(move |rows| (number, rows)))
-            .collect();
-        monitor.begin("lightmap", bands.len());
-        let lit: Vec<Vec<([u32; 2], Rgb)>> = bands
-            .par_iter()
-            .map(|(number, rows)| {
-                let tile = &tiles[*number];
-                let (chart, grid) = atlas.chart_of(tile);
-                let placement = scene.instances[tile.instance].placement;
-                let texels = Texels::new(chart, grid, rows.clone(), tile.instance, placement);
-                let light = irradiance(&texels);
-                assert_eq!(light.len(), texels.texels.len(), "one value a texel");
-                assert!(
-                    light.iter().flatten().all(|h| h.is_finite()),
-                    "irradiance must be a number: {light:?}"
-                );
-                monitor.advance(1);
-                texels.texels.iter().map(|texel| texel.at).zip(light).collect()
-            })
-            .collect();
-        let mut values: Vec<Vec<Option<Rgb>>> =
-            tiles.iter().map(|tile| vec![None; (tile.size[0] * tile.size[1]) as usize]).collect();
-        for ((number, _), lit) in bands.iter().zip(lit) {
-            let width = tiles[*number].size[0];
-            lit.into_iter()
-                .for_each(|([x, y], light)| values[*number][(y * width + x) as usize] = Some(light));
-        }
-        let mut holds: Vec<Vec<Holds>> =
-            values.iter().map(|values| values.iter().map(held).collect()).collect();
-        values.par_iter_mut().zip(&tiles).for_each(|(values, tile)| dilate::dilate(values, tile.size[0]));
-        for (holds, values) in holds.iter_mut().zip(&values) {
-            let reached = holds.iter_mut().zip(values).filter(|(_, value)| value.is_some());
-            reached.for_each(|(holds, _)| *holds = Holds::Margin.max(*holds));
-        }
-        let filled = |values: Vec<Option<Rgb>>| values.into_iter().map(Option::unwrap_or_default).collect();
-        let mut irradiance: Vec<Vec<Rgb>> = values.into_iter().map(filled).collect();
+        let values = values(scene, atlas, &tiles, irradiance, monitor);
+        let (mut irradiance, holds) = with_margins(values, &tiles);
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
         Self { scene, atlas, materials: materials.collect(), tiles, irradiance, holds }
@@ -149,8 +111,58 @@ impl<'a> Lightmap<'a> {
     }
 }
 
-fn held(value: &Option<Rgb>) -> Holds {
-    if value.is_some() { Holds::Chart } else { Holds::Nothing }
+/// The irradiance of texels that hold some of a chart, for each tile.
+fn values(
+    scene: &Scene,
+    atlas: &Atlas,
+    tiles: &[Tile],
+    irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
+    monitor: &Monitor,
+) -> Vec<Vec<Option<Rgb>>> {
+    let in_bands = |(number, tile): (usize, &Tile)| bands(tile.size).map(move |rows| (number, rows));
+    let bands: Vec<(usize, Range<u32>)> = tiles.iter().enumerate().flat_map(in_bands).collect();
+    monitor.begin("lightmap", bands.len());
+    let light_in = |(number, rows): &(usize, Range<u32>)| -> Vec<([u32; 2], Rgb)> {
+        let tile = &tiles[*number];
+        let (chart, grid) = atlas.chart_of(tile);
+        let placement = scene.instances[tile.instance].placement;
+        let texels = Texels::new(chart, grid, rows.clone(), tile.instance, placement);
+        let light = irradiance(&texels);
+        assert_eq!(light.len(), texels.texels.len(), "one value a texel");
+        assert!(light.iter().flatten().all(|h| h.is_finite()), "irradiance must be a number: {light:?}");
+        monitor.advance(1);
+        texels.texels.iter().map(|texel| texel.at).zip(light).collect()
+    };
+    let lit: Vec<_> = bands.par_iter().map(light_in).collect();
+    let mut values: Vec<Vec<Option<Rgb>>> = tiles.iter().map(|tile| vec![None; tile.texels()]).collect();
+    for ((number, _), lit) in bands.iter().zip(lit) {
+        let width = tiles[*number].size[0];
+        for ([x, y], light) in lit {
+            values[*number][(y * width + x) as usize] = Some(light);
+        }
+    }
+    values
+}
+
+/// Light for texels around charts too, zero for all others, and which is which.
+fn with_margins(mut values: Vec<Vec<Option<Rgb>>>, tiles: &[Tile]) -> (Vec<Vec<Rgb>>, Vec<Vec<Holds>>) {
+    let whose = |had: &[Option<Rgb>], have: &[Option<Rgb>]| {
+        let both = had.iter().zip(have);
+        both.map(|(had, have)| match (had, have) {
+            (Some(_), _) => Holds::Chart,
+            (None, Some(_)) => Holds::Margin,
+            (None, None) => Holds::Nothing,
+        })
+        .collect()
+    };
+    let fill = |(values, tile): (&mut Vec<Option<Rgb>>, &Tile)| {
+        let had = values.clone();
+        dilate::dilate(values, tile.size[0]);
+        whose(&had, values)
+    };
+    let holds = values.par_iter_mut().zip(tiles).map(fill).collect();
+    let filled = |values: Vec<Option<Rgb>>| values.into_iter().map(Option::unwrap_or_default).collect();
+    (values.into_iter().map(filled).collect(), holds)
 }
 
 /// The rows of a rectangle in pieces of which each fits in memory with its footprints.

@@ -1,72 +1,62 @@
-//! Seams: where two charts meet in one smooth surface, lookups on both sides of the edge must agree.
+//! Seams: where two charts meet in one smooth surface, lookups on both sides of the edge must agree. In go the charts of all
+//! instances with their light; it comes out corrected.
 //!
 //! Along every such edge, points are taken at the distance of the coarser chart's texels, so that they ask no more than
-//! its texels can give. With c_k the difference of the two bilinear lookups at point k as a row over texels, and v the
-//! values they had, the correction y minimises |y|² + μ Σ_(i, j) (y_i − y_j)² + λ Σ_k (c_k·(v + y))² over pairs of texels
-//! beside each other: as small and even as agreement allows, and whatever detail v has stays. Least squares over seams are
-//! due to Iwanicki (SIGGRAPH 2013, "Lighting Technology of The Last of Us"). The system is solved by conjugate gradients.
+//! its texels can give. Least squares over seams are due to Iwanicki (SIGGRAPH 2013, "Lighting Technology of The Last of
+//! Us").
 
 use super::atlas::{Atlas, Tile};
 use super::contacts::{Contact, smooth_contacts};
+use super::least_squares::{Difference, correction};
 use super::side::Side;
 use super::texels::bilinear;
 use equilux_formats::{Instance, Rgb};
 use glam::{DAffine3, DVec3};
-use std::collections::BTreeMap;
-
-/// λ: a jump shrinks to about a thousandth.
-const STIFFNESS: f64 = 1e3;
-/// μ: a correction fades along the seam over about three texels.
-const EVENNESS: f64 = 10.0;
-/// Conjugate gradients end when the residual has shrunk by this factor; half floats keep 5e-4.
-const ENOUGH: f64 = 1e-7;
-/// More steps than a system of this stiffness ever needs.
-const MOST_STEPS: usize = 1000;
-
-/// The difference of two lookups: texels of all charts by number, with weights.
-type Difference = Vec<(usize, f64)>;
+use std::collections::BTreeSet;
 
 /// Make charts of `tiles` agree along their seams. `values`: for each tile one a texel of its rectangle, row after row.
 pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values: &mut [Vec<Rgb>]) {
-    let starts: Vec<usize> = tiles
-        .iter()
-        .scan(0, |next, tile| {
-            let start = *next;
-            *next += (tile.size[0] * tile.size[1]) as usize;
-            Some(start)
-        })
-        .collect();
-    let differences = differences(atlas, instances, tiles, &starts);
+    let starts = starts(tiles);
+    let mut differences = differences(atlas, instances, tiles, &starts);
     // Only texels at seams take part, numbered without gaps.
-    let numbers: BTreeMap<usize, usize> =
-        differences.iter().flatten().map(|&(texel, _)| (texel, 0)).collect();
-    let texels: Vec<usize> = numbers.into_keys().collect();
-    let number = |texel: usize| texels.binary_search(&texel);
-    let places: Vec<(usize, usize)> = texels
-        .iter()
-        .map(|&texel| {
-            let tile = starts.partition_point(|&start| start <= texel) - 1;
-            (tile, texel - starts[tile])
-        })
-        .collect();
-    let inner = |&(texel, weight): &(usize, f64)| (number(texel).expect("it was put there"), weight);
-    let rows: Vec<Difference> = differences.iter().map(|row| row.iter().map(inner).collect()).collect();
-    let beside = |(i, &(tile, place)): (usize, &(usize, usize))| {
-        let width = tiles[tile].size[0] as usize;
-        let right = ((place + 1) % width != 0).then_some(texels[i] + 1);
-        let below = (place + width < values[tile].len()).then_some(texels[i] + width);
-        [right, below].into_iter().flatten().filter_map(move |texel| Some([i, number(texel).ok()?])).collect()
+    let texels: BTreeSet<usize> = differences.iter().flatten().map(|&(texel, _)| texel).collect();
+    let texels: Vec<usize> = texels.into_iter().collect();
+    let number = |texel: usize| texels.binary_search(&texel).ok();
+    for (texel, _) in differences.iter_mut().flatten() {
+        *texel = number(*texel).expect("it was put there");
+    }
+    let place = |&texel: &usize| {
+        let tile = starts.partition_point(|&start| start <= texel) - 1;
+        (tile, texel - starts[tile])
     };
-    let pairs: Vec<[usize; 2]> = places.iter().enumerate().flat_map::<Vec<_>, _>(beside).collect();
+    let places: Vec<(usize, usize)> = texels.iter().map(place).collect();
+    let pairs: Vec<[usize; 2]> = (0..texels.len())
+        .flat_map(|i| beside(&tiles[places[i].0], places[i].1).map(move |steps| (i, steps)))
+        .filter_map(|(i, steps)| Some([i, number(texels[i] + steps)?]))
+        .collect();
     let corrections: [Vec<f64>; 3] = std::array::from_fn(|channel| {
         let had: Vec<f64> = places.iter().map(|&(tile, texel)| values[tile][texel][channel]).collect();
-        correction(&rows, &pairs, &had)
+        correction(&differences, &pairs, &had)
     });
     for (i, &(tile, texel)) in places.iter().enumerate() {
         let value = &mut values[tile][texel];
         // A fit may swing below zero next to a shadow; light does not.
         *value = [0, 1, 2].map(|channel: usize| (value[channel] + corrections[channel][i]).max(0.0));
     }
+}
+
+/// The number of each tile's first texel, counted through all tiles.
+fn starts(tiles: &[Tile]) -> Vec<usize> {
+    let next = |next: &mut usize, tile: &Tile| Some(std::mem::replace(next, *next + tile.texels()));
+    tiles.iter().scan(0, next).collect()
+}
+
+/// How many texels further those to the right and below are, where the tile has them.
+fn beside(tile: &Tile, texel: usize) -> impl Iterator<Item = usize> + use<> {
+    let width = tile.size[0] as usize;
+    let right = (!(texel + 1).is_multiple_of(width)).then_some(1);
+    let below = (texel + width < tile.texels()).then_some(width);
+    right.into_iter().chain(below)
 }
 
 /// The lookups that must agree, in the scene.
@@ -102,52 +92,4 @@ fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[
         }
     }
     differences
-}
-
-/// (I + μDᵀD + λCᵀC) y = −λCᵀC v by conjugate gradients.
-fn correction(rows: &[Difference], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f64> {
-    let add_agreement = |x: &[f64], y: &mut [f64]| {
-        for row in rows {
-            let difference: f64 = row.iter().map(|&(i, weight)| weight * x[i]).sum();
-            row.iter().for_each(|&(i, weight)| y[i] += STIFFNESS * difference * weight);
-        }
-    };
-    let apply = |x: &[f64]| {
-        let mut y = x.to_vec();
-        for &[i, j] in pairs {
-            let force = EVENNESS * (x[i] - x[j]);
-            y[i] += force;
-            y[j] -= force;
-        }
-        add_agreement(x, &mut y);
-        y
-    };
-    let mut y = vec![0.0; v.len()];
-    let mut residual = vec![0.0; v.len()];
-    add_agreement(v, &mut residual);
-    residual.iter_mut().for_each(|r| *r = -*r);
-    let mut direction = residual.clone();
-    let mut square = dot(&residual, &residual);
-    let goal = square * ENOUGH * ENOUGH;
-    for _ in 0..MOST_STEPS {
-        if square <= goal {
-            break;
-        }
-        let image = apply(&direction);
-        let step = square / dot(&direction, &image);
-        add(&mut y, step, &direction);
-        add(&mut residual, -step, &image);
-        let next = dot(&residual, &residual);
-        let turned = residual.iter().zip(&direction).map(|(r, d)| r + next / square * d).collect();
-        (direction, square) = (turned, next);
-    }
-    y
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn add(to: &mut [f64], factor: f64, other: &[f64]) {
-    to.iter_mut().zip(other).for_each(|(to, other)| *to += factor * other);
 }

@@ -26,45 +26,42 @@ pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposur
     let most =
         lightmap.irradiance.iter().flatten().flatten().fold(0.0f64, |most, &h| most.max(h)) * units.factor();
     let scale = half_scale(most);
-    let made = |result: io::Result<Vec<u8>>| result.map_err(|error| unmade(folder, &error));
-    let numbers = 0..lightmap.atlas.images.len();
-    let images: Vec<[File; 2]> = numbers
-        .clone()
-        .map(|number| {
-            Ok([
-                File {
-                    name: name(number, "exr"),
-                    bytes: made(exr(lightmap, number, units.factor() * scale))?,
-                },
-                File { name: name(number, "png"), bytes: made(png(lightmap, number, exposure))? },
-            ])
-        })
-        .collect::<Result<_>>()?;
-    let list = format!("{:#}\n", listing(lightmap, &images, units, scale)).into_bytes();
-    let peaks = peaks(lightmap);
-    let pages = |page: &dyn Fn(usize) -> io::Result<Vec<u8>>| {
-        numbers.clone().map(|n| made(page(n))).collect::<Result<Vec<_>>>()
-    };
-    let relative = pages(&|number| relative_png(lightmap, number, &peaks))?;
-    let shown = pages(&|number| shown_png(lightmap, number, exposure))?;
-    let models = [
-        ("lightmapped.glb", made(model(lightmap, &relative, &Look::Emissive(&peaks)))?),
-        ("lightmapped.unlit.glb", made(model(lightmap, &shown, &Look::Unlit))?),
-    ];
-    let files = models.into_iter().map(|(name, bytes)| File { name: name.into(), bytes });
-    let files: Vec<File> = images.into_iter().flatten().chain(files).collect();
+    let made = files(lightmap, units, scale, exposure).map_err(|error| unmade(folder, &error))?;
     let mut paths = Vec::new();
-    for File { name, bytes } in files.iter().chain([&File { name: "lightmaps.json".into(), bytes: list }]) {
+    for File { name, bytes } in &made {
         let path = folder.join(name);
         output_file::write(&path, |out| out.write_all(bytes))?;
         paths.push(path);
     }
-    remove_images_from(folder, numbers.end);
+    remove_images_from(folder, lightmap.atlas.images.len());
     let scaled = format!(
-        "half floats do not reach the lightmap's brightest light, {most:.3e}: its numbers are multiplied by {scale}"
+        "half floats cannot hold a lightmap that is {most:.3e} at its brightest: its numbers are multiplied by {scale}"
     );
     let notes = lightmap.atlas.notes.iter().cloned().chain((scale != 1.0).then_some(scaled));
     Ok(Saved { paths, notes: notes.collect() })
+}
+
+/// All files, images first.
+fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> io::Result<Vec<File>> {
+    let numbers = || 0..lightmap.atlas.images.len();
+    let pair = |number| {
+        let light = exr(lightmap, number, units.factor() * scale)?;
+        let preview = png(lightmap, number, exposure)?;
+        Ok([File::new(name(number, "exr"), light), File::new(name(number, "png"), preview)])
+    };
+    let images: Vec<[File; 2]> = numbers().map(pair).collect::<io::Result<_>>()?;
+    let list = format!("{:#}\n", listing(lightmap, &images, units, scale)).into_bytes();
+    let peaks = peaks(lightmap);
+    let relative: Vec<Vec<u8>> =
+        numbers().map(|n| relative_png(lightmap, n, &peaks)).collect::<io::Result<_>>()?;
+    let shown: Vec<Vec<u8>> =
+        numbers().map(|n| shown_png(lightmap, n, exposure)).collect::<io::Result<_>>()?;
+    let others = [
+        File::new("lightmapped.glb", model(lightmap, &relative, &Look::Emissive(&peaks))?),
+        File::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
+        File::new("lightmaps.json", list),
+    ];
+    Ok(images.into_iter().flatten().chain(others).collect())
 }
 
 /// The first image has no number: mostly it is the only one.
