@@ -137,7 +137,7 @@ fn a_spot_shines_in_its_cone_only_and_as_a_point_inside() {
 fn window() -> Vec<Part> {
     let mut wall = part(grey(0.0, 0.0));
     for (y, z, height, width) in
-        [(0.0, -2.0, 1.0, 4.0), (2.0, -2.0, 1.0, 4.0), (1.0, -2.0, 1.0, 1.5), (1.0, 0.5, 1.0, 1.5)]
+        [(0.0, -3.0, 1.0, 6.0), (2.0, -3.0, 1.0, 6.0), (1.0, -3.0, 1.0, 2.5), (1.0, 0.5, 1.0, 2.5)]
     {
         wall = rectangle(wall, dvec3(0.0, y, z), height * DVec3::Y, width * DVec3::Z);
     }

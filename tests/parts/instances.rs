@@ -99,7 +99,7 @@ proptest! {
         let nodes = nodes(&placed, &coupled, &each);
         let goal = Goal { error: 0.0, rounds: usize::MAX };
         let outcome = exchange(&nodes, Method::Auto, goal, None, &monitor);
-        let whole = classic(&placed, &monitor).expect("not stopped");
+        let whole = classic(&placed, &whole_optics(&placed), &monitor).expect("not stopped");
         // In the whole the own blocks are computed in the scene's coordinates: see above.
         let off = largest_difference(&outcome.radiosity, &whole.radiosity);
         prop_assert!(off <= 1e-9, "{off} away from the whole, brightest {:?}", whole_optics(&placed).emission.iter().flatten().fold(0.0, |a: f64, b| a.max(*b)));

@@ -4,7 +4,7 @@
 //! origin and is given by its normal alone.
 
 use super::plain::IN_PLANE;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
 /// A planar convex polygon, corners in order. Ten corners lie in place; more spill to the heap, none are dropped.
@@ -161,19 +161,19 @@ impl Pyramid {
 
 /// The convex hull of points in a plane, counter-clockwise around `normal`, without corners that bend by rounding only
 /// (Andrew 1979).
+///
+/// First all corners are found, by signs alone: columns of a grid differ by rounding along one axis, and a tolerance there
+/// would drop their ends. Only then those go that lie on the line between their neighbours.
 pub fn convex_hull(points: impl Iterator<Item = DVec3>, normal: DVec3) -> Polygon {
     let (u, v) = normal.any_orthonormal_pair();
-    let mut sorted: Polygon = points.collect();
-    sorted.sort_by(|a, b| a.dot(u).total_cmp(&b.dot(u)).then(a.dot(v).total_cmp(&b.dot(v))));
-    let turns_left = |a: DVec3, b: DVec3, c: DVec3| {
-        let (ab, bc) = (b - a, c - b);
-        let limit = 1e-9 * ab.length() * bc.length();
-        ab.dot(u) * bc.dot(v) - ab.dot(v) * bc.dot(u) > limit
-    };
-    let half = |points: &mut dyn Iterator<Item = DVec3>| {
-        let mut chain = Polygon::new();
+    let mut sorted: SmallVec<[(DVec2, DVec3); 32]> =
+        points.map(|p| (DVec2::new(p.dot(u), p.dot(v)), p)).collect();
+    sorted.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)));
+    sorted.dedup_by_key(|(place, _)| *place);
+    let half = |points: &mut dyn Iterator<Item = (DVec2, DVec3)>| {
+        let mut chain: SmallVec<[(DVec2, DVec3); 16]> = SmallVec::new();
         for p in points {
-            while chain.len() >= 2 && !turns_left(chain[chain.len() - 2], chain[chain.len() - 1], p) {
+            while chain.len() >= 2 && !turns_left(&chain[chain.len() - 2..], p, 0.0) {
                 chain.pop();
             }
             chain.push(p);
@@ -181,7 +181,48 @@ pub fn convex_hull(points: impl Iterator<Item = DVec3>, normal: DVec3) -> Polygo
         chain.pop();
         chain
     };
+    if sorted.len() == 1 {
+        return Polygon::from_slice(&[sorted[0].1]);
+    }
     let mut hull = half(&mut sorted.iter().copied());
     hull.extend(half(&mut sorted.iter().rev().copied()));
-    hull
+    let mut next = 0;
+    while hull.len() > 2 && next < hull.len() {
+        let count = hull.len();
+        let corner = [hull[(next + count - 1) % count], hull[next]];
+        if turns_left(&corner, hull[(next + 1) % count], 1e-9) {
+            next += 1;
+        } else {
+            hull.remove(next);
+            next = next.saturating_sub(1);
+        }
+    }
+    hull.into_iter().map(|(_, p)| p).collect()
+}
+
+/// Whether the way through two places on to a third turns left, by more than this sine.
+fn turns_left(way: &[(DVec2, DVec3)], to: (DVec2, DVec3), sine: f64) -> bool {
+    let (ab, bc) = (way[1].0 - way[0].0, to.0 - way[1].0);
+    ab.perp_dot(bc) > sine * ab.length() * bc.length()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns of a grid differ by rounding; whichever point of one comes first, the hull has the four corners.
+    #[test]
+    fn the_hull_of_a_grid_that_was_rounded_is_its_four_corners() {
+        for k in 1..50u32 {
+            let at = |i: u32, j: u32| {
+                let rounding = f64::from((i * 7 + j * 3 + k * 11) % 5) * f64::EPSILON;
+                DVec3::new(1.0 + f64::from(i) * 0.05 + rounding, 0.0, 1.0 + f64::from(j) * 0.05 - rounding)
+            };
+            let points: Vec<DVec3> = (0..35).map(|n| at(n % 5, n / 5)).collect();
+            let hull = convex_hull(points.into_iter(), DVec3::Y);
+            let is_corner = |p: DVec3| hull.iter().any(|q| (p - q).length() < 1e-12);
+            let all = [at(0, 0), at(4, 0), at(4, 6), at(0, 6)].into_iter().all(is_corner);
+            assert!(all && hull.len() == 4, "grid {k}: {hull:?}");
+        }
+    }
 }
