@@ -2,6 +2,8 @@
 //! as standard errors. `scenes/<name>/truth.csv` holds one line an element; `scenes/README.md` says what its
 //! columns mean.
 
+mod texels;
+
 use equilux_assemble::exchange::{Goal, Method};
 use equilux_assemble::gather::outside::LightUnits;
 use equilux_assemble::proof::sample::ExactRows;
@@ -11,6 +13,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use equilux_tests::table::Table;
+use glam::DVec3;
 use std::fmt::{self, Display, Formatter};
 use std::path::{Path, PathBuf};
 
@@ -42,7 +45,9 @@ fn agrees(name: &str) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
     let truth = Table::read(&folder.join("truth.csv"));
     let ours = assembled(&folder.join(name).with_extension("glb"));
-    let found = gathered(&truth, &ours);
+    let found = gathered(&truth, places(&ours), |row| {
+        (ours.number(row, "area"), ["H_r", "H_g", "H_b"].map(|colour| ours.number(row, colour)))
+    });
     for (channel, colour) in ["r", "g", "b"].iter().enumerate() {
         let at_centroids =
             Errors::of(&truth, &found, ["Hc", "Hc_se"].map(|k| format!("{k}_{colour}")), channel);
@@ -99,15 +104,13 @@ struct Found {
 
 /// Our elements summed over the truth's. The truth has quads; where the mesh's two triangles do not lie in one plane,
 /// as on the red wall of `cornell`, we have two elements of one of its.
-fn gathered(truth: &Table, ours: &Table) -> Vec<Found> {
+fn gathered(truth: &Table, ours: Vec<(DVec3, DVec3)>, of: impl Fn(usize) -> (f64, [f64; 3])) -> Vec<Found> {
     let mut found = vec![Found::default(); truth.rows()];
     for (row, owner) in owners(truth, ours).into_iter().enumerate() {
         let own = &mut found[owner];
-        let area = ours.number(row, "area");
+        let (area, irradiance) = of(row);
         own.area += area;
-        for (channel, colour) in ["H_r", "H_g", "H_b"].iter().enumerate() {
-            own.power[channel] += area * ours.number(row, colour);
-        }
+        (0..3).for_each(|channel| own.power[channel] += area * irradiance[channel]);
     }
     for (row, own) in found.iter().enumerate() {
         let expected = truth.number(row, "area");
@@ -122,11 +125,7 @@ fn gathered(truth: &Table, ours: &Table) -> Vec<Found> {
 }
 
 /// For each of our elements the one of the truth that looks the same way and whose centroid is nearest.
-fn owners(truth: &Table, ours: &Table) -> Vec<usize> {
-    let places = |table: &Table| {
-        let (centroids, normals) = (table.vectors(["x", "y", "z"]), table.vectors(["nx", "ny", "nz"]));
-        centroids.into_iter().zip(normals).collect::<Vec<_>>()
-    };
+fn owners(truth: &Table, ours: Vec<(DVec3, DVec3)>) -> Vec<usize> {
     let truth = places(truth);
     let owner = |(centroid, normal)| {
         let alike = (0..truth.len()).filter(|&i: &usize| truth[i].1.dot(normal) > 0.99);
@@ -134,7 +133,13 @@ fn owners(truth: &Table, ours: &Table) -> Vec<usize> {
         let nearest = alike.min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
         nearest.unwrap_or_else(|| panic!("no element of the truth looks like ours at {centroid}"))
     };
-    places(ours).into_iter().map(owner).collect()
+    ours.into_iter().map(owner).collect()
+}
+
+/// Where elements are, and where they look.
+fn places(table: &Table) -> Vec<(DVec3, DVec3)> {
+    let (centroids, normals) = (table.vectors(["x", "y", "z"]), table.vectors(["nx", "ny", "nz"]));
+    centroids.into_iter().zip(normals).collect()
 }
 
 /// Root of the mean square over all area, in units of the mean.
