@@ -75,8 +75,19 @@ fn a_furnace_has_an_even_lightmap() {
 fn files_are_the_same_bytes_for_any_number_of_threads() {
     let workshop = Workshop::with(&furnished());
     let made = |threads: &str| {
-        let ended = workshop
-            .run("assemble", &["scene.glb", "--element-size", "0.5", "--lightmaps", "--threads", threads]);
+        let ended = workshop.run(
+            "assemble",
+            &[
+                "scene.glb",
+                "--element-size",
+                "0.5",
+                "--lightmaps",
+                "--texel-size",
+                "0.05",
+                "--threads",
+                threads,
+            ],
+        );
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         let files = FILES.map(|name| std::fs::read(workshop.path("out/scene").join(name)).expect(name));
         std::fs::remove_dir_all(workshop.path("out")).expect("a folder to remove");

@@ -12,7 +12,7 @@ use equilux_bake::treecode::EXACT;
 use equilux_formats::{LightKind, Part, PunctualLight, Rgb};
 use equilux_tests::lit::{Lit, lit};
 use equilux_tests::model::{Model, Node};
-use equilux_tests::shapes::{grey, joined, part, rectangle, room};
+use equilux_tests::shapes::{grey, joined, part, rectangle, room, solid};
 use equilux_tests::table::Table;
 use equilux_tests::workshop::{Workshop, assembled};
 use glam::{DVec3, dvec3};
@@ -270,4 +270,33 @@ fn with_light(mut model: Model, light: serde_json::Value) -> Model {
     model.json["extensions"] = serde_json::json!({ "KHR_lights_punctual": { "lights": [light] } });
     model.json["extensionsUsed"].as_array_mut().expect("extensions").push("KHR_lights_punctual".into());
     model
+}
+
+#[test]
+fn a_texel_under_a_crate_is_dark_and_one_beside_it_is_not() {
+    let walls = room(grey(0.5, 0.0), DVec3::ZERO, dvec3(4.0, 3.0, 4.0));
+    let lamp = rectangle(part(grey(0.0, 10.0)), dvec3(1.5, 2.5, 1.5), DVec3::X, DVec3::Z);
+    let wooden = solid(grey(0.5, 0.0), dvec3(1.0, 0.0, 1.0), dvec3(1.5, 0.5, 1.5));
+    let scene = placed(vec![walls, lamp, wooden], 0.5);
+    let (emission, radiosity) = (&scene.optics.emission, &scene.outcome.radiosity);
+    let gather = Gather::new(&scene.placed, emission, radiosity, &Lights::default(), EXACT);
+    let plane = gather.faces().in_plane(DVec3::ZERO, DVec3::Y);
+    let light = |x: f64, z: f64, size: f64| -> f64 {
+        let corners = [
+            dvec3(x, 0.0, z),
+            dvec3(x, 0.0, z + size),
+            dvec3(x + size, 0.0, z + size),
+            dvec3(x + size, 0.0, z),
+        ];
+        let pieces = [Piece { corners: &corners, normal: DVec3::Y, area: size * size, plane: &plane }];
+        gather.direct(&pieces, [1.0; 3])[0][0] + gather.reflected_over(&pieces, [1.0; 3])[0][0]
+    };
+    for (x, z) in [(1.0, 1.0), (1.2, 1.3), (1.45, 1.45)] {
+        assert_eq!(light(x, z, 0.05), 0.0, "under the crate at {x}, {z}");
+    }
+    let beside = light(1.55, 1.55, 0.05);
+    assert!(beside > 0.0, "{beside} beside the crate");
+    // Half of it lies under the crate.
+    let half = light(1.475, 1.2, 0.05);
+    assert!(half > 0.0 && half < light(1.51, 1.2, 0.05), "{half} on the crate's edge");
 }

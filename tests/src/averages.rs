@@ -1,12 +1,69 @@
 //! Irradiance averaged over given elements, as texels of that size have it.
 
-use crate::lit::Lit;
+use crate::lit::{Lit, lit};
+use crate::table::Table;
+use crate::truth::{Errors, gathered};
 use equilux_assemble::gather::average::{Piece, centre};
 use equilux_assemble::gather::faces::{Faces, Plane};
 use equilux_assemble::gather::{Gather, Lights};
+use equilux_bake::elements::ElementSize;
+use equilux_bake::gltf_import::import_scene;
+use equilux_bake::prepare::{Division, Preparation, prepare};
 use equilux_bake::treecode::Resolution;
-use equilux_formats::{Element, Rgb};
+use equilux_bake::world::World;
+use equilux_formats::{Element, Instance, Rgb};
 use glam::DVec3;
+use std::path::Path;
+
+/// Texels as large as the truth's elements against the truth.
+pub struct Compared {
+    /// One a channel.
+    pub errors: [Errors; 3],
+    /// Number of elements of the solution, and of texels.
+    pub counts: [usize; 2],
+    /// CPU seconds for the solution from nothing, and for the texels.
+    pub seconds: [f64; 2],
+}
+
+/// The texels of one of our scenes, its level modelled coarsely and with elements of `size` metres, against the truth, which
+/// is cut finely.
+pub fn compared(name: &str, size: f64, tolerance: f64) -> Compared {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (folder, coarse) = (here.join("../scenes").join(name), here.join(format!("truth/{name}.coarse.glb")));
+    let resolution = Resolution::for_tolerance(tolerance);
+    let wanted = |element_size| Preparation {
+        element_size: Some(element_size),
+        division: Division::Authored,
+        resolution,
+        local_solver: None,
+    };
+    let fine = import_scene(&folder.join(name).with_extension("glb")).expect("a scene");
+    let fine = prepare(&fine, &wanted(ElementSize::Mesh)).expect("elements");
+    let geometry = |i: &Instance| (&fine.parts[i.part.index()].geometry, i.placement);
+    let elements = World::new(fine.instances.iter().map(geometry)).elements;
+    let start = cpu_seconds();
+    let lit = lit(&coarse, &wanted(ElementSize::Metres(size)));
+    let solved = cpu_seconds();
+    let light = averages(&lit, &elements, resolution);
+    let seconds = [solved - start, cpu_seconds() - solved];
+
+    let truth = Table::read(&folder.join("truth.csv"));
+    let places = elements.iter().map(|e| (e.centroid, e.normal)).collect();
+    let found = gathered(&truth, places, |row| (elements[row].area, light[row]));
+    let errors = [0, 1, 2].map(|channel: usize| {
+        let colour = ["r", "g", "b"][channel];
+        Errors::of(&truth, &found, ["Ha", "Ha_se"].map(|k| format!("{k}_{colour}")), channel)
+    });
+    Compared { errors, counts: [lit.placed.world.elements.len(), elements.len()], seconds }
+}
+
+/// CPU time of this process so far, where the system tells; in hundredths of seconds.
+fn cpu_seconds() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();
+    let ticks = |field: usize| fields.get(field).and_then(|t| t.parse::<f64>().ok()).unwrap_or(0.0);
+    (ticks(11) + ticks(12)) / 100.0
+}
 
 /// The average irradiance of each element, W/m²: direct light exact over the element, reflected light at its centroid.
 /// The elements lie in the faces of the scene that is lit, or, where they come from a finer mesh of it, near them: then

@@ -15,4 +15,5 @@ pub mod program;
 pub mod rooms;
 pub mod shapes;
 pub mod table;
+pub mod truth;
 pub mod workshop;
