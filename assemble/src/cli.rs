@@ -90,6 +90,9 @@ struct Assembly {
     /// What the numbers in lightmap.exr are
     #[arg(long, value_name = "UNITS", requires = "lightmaps", default_value = "irradiance")]
     lightmap_units: LightmapUnits,
+    /// Also write where the light of each texel comes from: lightmap_direction.exr
+    #[arg(long, requires = "lightmaps")]
+    lightmap_directions: bool,
     /// Also solve the classic whole-scene matrix and print the largest difference
     #[arg(long)]
     verify: bool,
@@ -263,6 +266,7 @@ impl Assembly {
             sky: self.sky.clone(),
             lightmaps: self.lightmaps.then_some(Wanted {
                 texel_size: self.texel_size,
+                directions: self.lightmap_directions,
                 units: match self.lightmap_units {
                     LightmapUnits::Irradiance => Units::Irradiance,
                     LightmapUnits::Bevy => Units::Bevy,

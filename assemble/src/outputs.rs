@@ -114,7 +114,10 @@ fn write_lightmaps(
     let resolution = job.preparation.resolution;
     let gather = Gather::new(placed, &light.optics.emission, &outcome.radiosity, light.lights, resolution);
     let texel_light = TexelLight::new(&gather, mean_over_area(placed, &outcome.irradiance));
-    let lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
+    let mut lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
+    if wanted.directions {
+        lightmap = lightmap.with_directions(|texels| texel_light.directions(texels), monitor);
+    }
     lightmap::write(folder, &lightmap, wanted.units, exposure).map(Some)
 }
 

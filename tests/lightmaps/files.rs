@@ -6,7 +6,7 @@ use equilux_bake::prepare::Division;
 use equilux_tests::curved::sphere;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, square};
-use equilux_tests::shapes::{grey, joined, part, room, triangle};
+use equilux_tests::shapes::{grey, joined, part, rectangle, room, triangle};
 use equilux_tests::workshop::{Workshop, assembled};
 use exr::prelude::read_first_rgba_layer_from_file;
 use glam::{DVec3, dvec3};
@@ -38,7 +38,7 @@ pub fn baked(nodes: &[Node], units: Units) -> Workshop {
 fn divided(nodes: &[Node], units: Units, division: Division) -> Workshop {
     let workshop = Workshop::with(nodes);
     let mut job = workshop.job(division);
-    job.lightmaps = Some(Wanted { texel_size: Some(0.05), units });
+    job.lightmaps = Some(Wanted { texel_size: Some(0.05), units, directions: false });
     job.pictures = Pictures::None;
     assembled(&job);
     workshop
@@ -152,4 +152,38 @@ fn a_texel_size_that_nothing_can_hold_is_an_input_error_before_any_work() {
         assert!(ended.stderr.contains("texel"), "{}", ended.stderr);
     }
     assert!(!workshop.path(".equilux").exists(), "nothing is baked before the lightmap is known to fit");
+}
+
+/// In a black room with one small lamp all light comes straight from it; beside a lamp that fills a wall it does not.
+#[test]
+fn directions_point_to_where_light_comes_from() {
+    let black = room(grey(0.0, 0.0), DVec3::ZERO, dvec3(2.0, 2.0, 2.0));
+    let low = dvec3(0.99, 1.98, 0.99);
+    let lamp = rectangle(part(grey(0.0, 1000.0)), low, 0.02 * DVec3::X, 0.02 * DVec3::Z);
+    let workshop = Workshop::with(&[Node::new("room", black), Node::new("lamp", lamp)]);
+    let mut job = workshop.job(Division::Authored);
+    job.lightmaps = Some(Wanted { texel_size: Some(0.1), units: Units::Irradiance, directions: true });
+    job.pictures = Pictures::None;
+    assembled(&job);
+    let list = std::fs::read(workshop.path("out/scene/lightmaps.json")).expect("a list");
+    let list: Value = serde_json::from_slice(&list).expect("JSON");
+    let name = list["images"][0]["direction"].as_str().expect("a file");
+    let (_, light) = texels(&workshop.path("out/scene/lightmap.exr"));
+    let (_, directions) = texels(&workshop.path("out/scene").join(name));
+    let mut seen = 0;
+    for (light, direction) in light.iter().zip(&directions).filter(|(light, _)| light[0] > 0.5) {
+        let length = direction.iter().map(|d| d * d).sum::<f32>().sqrt();
+        // Half floats hold three digits, and the lamp is two centimetres wide.
+        assert!(
+            (length - 1.0).abs() <= 2e-3,
+            "{length} long where {light:?} comes from one lamp: {direction:?}"
+        );
+        seen += 1;
+    }
+    assert!(seen > 100, "{seen} texels are lit");
+    assert!(directions.iter().any(|d| d[1] > 0.99), "the floor below the lamp looks straight up");
+
+    job.lightmaps = Some(Wanted { directions: false, ..job.lightmaps.expect("asked for") });
+    assembled(&job);
+    assert!(!workshop.path("out/scene").join(name).exists(), "directions of an earlier run are gone");
 }

@@ -8,6 +8,7 @@
 //!     radiosity ρH of all elements, sky → reflected, at a point
 
 pub mod average;
+mod directions;
 pub mod faces;
 mod glowing;
 pub mod lamps;
@@ -20,7 +21,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::visibility::Inside;
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Element, FaceId, Geometry, MaterialId, Rgb};
+use equilux_formats::{Corners, Element, FaceId, Geometry, MaterialId, Rgb, Rows};
 use faces::Faces;
 use glam::DVec3;
 use lamps::Lamp;
@@ -159,6 +160,11 @@ impl Gather {
         if senders.is_empty() {
             return vec![[0.0; 3]; points.len()];
         }
+        apply(&self.rows(points, senders, resolution), sent)
+    }
+
+    /// The rows of points, columns through all nodes of the world.
+    fn rows(&self, points: &[Element], senders: &[usize], resolution: Resolution) -> Rows {
         let request = Request {
             world: &self.world,
             receivers: Audience::Points(points),
@@ -169,8 +175,7 @@ impl Gather {
             revision: None,
         };
         // Each call is short: whoever calls looks whether to stop.
-        let found = block(&request, &Monitor::default()).expect("nobody stops it");
-        apply(&found.block, sent)
+        block(&request, &Monitor::default()).expect("nobody stops it").block
     }
 }
 

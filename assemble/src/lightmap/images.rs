@@ -79,9 +79,24 @@ fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(us
 
 /// The EXR file of an image: irradiance times `factor`, as half floats, compressed without loss.
 pub fn exr(lightmap: &Lightmap, number: usize, factor: f64) -> io::Result<Vec<u8>> {
-    let texels = image(lightmap, number, [f16::ZERO; 3], |tile, texel| {
-        lightmap.irradiance[tile][texel].map(|h| f16::from_f64(h * factor))
-    });
+    half_floats(lightmap, number, |tile, texel| lightmap.irradiance[tile][texel].map(|h| h * factor))
+}
+
+/// The EXR file of an image's directions, x, y and z as red, green and blue.
+pub fn directions_exr(
+    lightmap: &Lightmap,
+    number: usize,
+    directions: &[Vec<[f64; 3]>],
+) -> io::Result<Vec<u8>> {
+    half_floats(lightmap, number, |tile, texel| directions[tile][texel])
+}
+
+fn half_floats(
+    lightmap: &Lightmap,
+    number: usize,
+    value: impl Fn(usize, usize) -> [f64; 3],
+) -> io::Result<Vec<u8>> {
+    let texels = image(lightmap, number, [f16::ZERO; 3], |tile, texel| value(tile, texel).map(f16::from_f64));
     let [width, height] = lightmap.atlas.images[number].map(|side| side as usize);
     let channels = SpecificChannels::rgb(|Vec2(x, y)| {
         let [r, g, b] = texels[y * width + x];

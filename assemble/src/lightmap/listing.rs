@@ -1,8 +1,12 @@
 //! What lies where in a lightmap, for programs: `lightmaps.json`.
 
 use super::pack::Spot;
+use super::write::direction_name;
 use super::{Lightmap, Units};
 use serde_json::{Value, json};
+
+/// What directions are.
+const DIRECTIONS: &str = "mean direction to the light, scene axes, weighted by the luminance of its irradiance: 1 long where light comes from one direction, 0 where it comes evenly from all";
 
 /// A file in memory.
 pub struct File {
@@ -28,9 +32,11 @@ pub fn listing(lightmap: &Lightmap, images: &[[File; 2]], units: Units, scale: f
         "scale": scale,
         "texel_size": lightmap.atlas.texel_size,
         "uv": "TEXCOORD_1 of lightmapped.glb (the author's own where it could be kept), times scale, plus offset; (0, 0) is the upper left corner of the image",
-        "images": lightmap.atlas.images.iter().zip(images).map(|([width, height], [exr, png])| json!({
+        "directions": lightmap.directions.as_ref().map(|_| DIRECTIONS),
+        "images": lightmap.atlas.images.iter().zip(images).enumerate().map(|(number, ([width, height], [exr, png]))| json!({
             "file": exr.name, "width": width, "height": height, "blake3": hash(exr),
             "preview": png.name, "preview_blake3": hash(png),
+            "direction": lightmap.directions.as_ref().map(|_| direction_name(number)),
         })).collect::<Vec<_>>(),
         "nodes": instances.map(|(number, instance)| json!({
             "name": instance.name,

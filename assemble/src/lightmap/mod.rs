@@ -13,6 +13,7 @@ pub mod chart;
 pub mod contacts;
 mod dilate;
 pub mod estimate;
+mod field;
 pub mod grid;
 mod images;
 mod least_squares;
@@ -44,6 +45,8 @@ pub struct Wanted {
     pub texel_size: Option<f64>,
     /// What the numbers in the images mean.
     pub units: Units,
+    /// Whether to write where light comes from, too.
+    pub directions: bool,
 }
 
 /// A scene with light on its surfaces.
@@ -56,6 +59,8 @@ pub struct Lightmap<'a> {
     pub tiles: Vec<Tile>,
     /// Irradiance, W/m², linear RGB, for each tile one a texel of its rectangle, row after row.
     pub irradiance: Vec<Vec<Rgb>>,
+    /// Where the light of each of these comes from, if that is asked for: see [`Lightmap::with_directions`].
+    pub directions: Option<Vec<Vec<[f64; 3]>>>,
     /// For each of these what of the chart it holds.
     holds: Vec<Vec<Holds>>,
     /// What each instance's materials do with light.
@@ -89,7 +94,19 @@ impl<'a> Lightmap<'a> {
         let (mut irradiance, holds) = with_margins(values, &tiles);
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
-        Self { scene, atlas, materials: materials.collect(), tiles, irradiance, holds }
+        Self { scene, atlas, materials: materials.collect(), tiles, irradiance, directions: None, holds }
+    }
+
+    /// The same with the mean direction that each texel's light comes from, which `directions` gives: scene coordinates, weighted
+    /// by what comes from there, so that it is as long as light is directed, 0 to 1.
+    pub fn with_directions(
+        mut self,
+        directions: impl Fn(&Texels) -> Vec<[f64; 3]> + Sync,
+        monitor: &Monitor,
+    ) -> Self {
+        let values = values(self.scene, self.atlas, &self.tiles, directions, monitor);
+        self.directions = Some(with_margins(values, &self.tiles).0);
+        self
     }
 
     /// The material of a tile.

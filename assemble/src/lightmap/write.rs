@@ -3,7 +3,7 @@
 //! The unlit model is a file of its own and not a variant in the other: KHR_materials_variants shows its second look only
 //! in viewers that know it, and most engines do not.
 
-use super::images::{exr, half_scale, peaks, png, relative_png, shown_png};
+use super::images::{directions_exr, exr, half_scale, peaks, png, relative_png, shown_png};
 use super::listing::{File, listing};
 use super::model::{Look, model};
 use super::{Lightmap, Units};
@@ -33,7 +33,7 @@ pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposur
         output_file::write(&path, |out| out.write_all(bytes))?;
         paths.push(path);
     }
-    remove_images_from(folder, lightmap.atlas.images.len());
+    remove_images_from(folder, lightmap.atlas.images.len(), lightmap.directions.is_some());
     let scaled = format!(
         "half floats cannot hold a lightmap that is {most:.3e} at its brightest: its numbers are multiplied by {scale}"
     );
@@ -61,7 +61,15 @@ fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> i
         File::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
         File::new("lightmaps.json", list),
     ];
-    Ok(images.into_iter().flatten().chain(others).collect())
+    let directions = |number: usize, of: &Vec<Vec<[f64; 3]>>| {
+        Ok(File::new(direction_name(number), directions_exr(lightmap, number, of)?))
+    };
+    let directions: Vec<File> = lightmap
+        .directions
+        .iter()
+        .flat_map(|of| numbers().map(move |number| directions(number, of)))
+        .collect::<io::Result<_>>()?;
+    Ok(images.into_iter().flatten().chain(directions).chain(others).collect())
 }
 
 /// The first image has no number: mostly it is the only one.
@@ -69,15 +77,25 @@ fn name(number: usize, ending: &str) -> String {
     if number == 0 { format!("lightmap.{ending}") } else { format!("lightmap-{}.{ending}", number + 1) }
 }
 
-/// Take away images numbered `first` and above.
-fn remove_images_from(folder: &Path, first: usize) {
+/// The same of directions.
+pub fn direction_name(number: usize) -> String {
+    if number == 0 {
+        "lightmap_direction.exr".into()
+    } else {
+        format!("lightmap_direction-{}.exr", number + 1)
+    }
+}
+
+/// Take away images numbered `first` and above that an earlier, larger lightmap left, and directions that nobody asked for.
+fn remove_images_from(folder: &Path, first: usize, directions: bool) {
+    let remove = |name: String| std::fs::remove_file(folder.join(name)).is_ok();
     for number in first.. {
-        let removed =
-            ["exr", "png"].map(|ending| std::fs::remove_file(folder.join(name(number, ending))).is_ok());
-        if removed == [false; 2] {
+        if [name(number, "exr"), name(number, "png")].map(remove) == [false; 2] {
             break;
         }
     }
+    let first = if directions { first } else { 0 };
+    (first..).take_while(|&number| remove(direction_name(number))).for_each(drop);
 }
 
 fn unmade(folder: &Path, error: &io::Error) -> Error {

@@ -1,0 +1,71 @@
+//! Where light comes from. In go pieces of surface; out comes for each the mean direction of its light, weighted by the
+//! luminance of the irradiance that comes from there.
+
+use super::average::{Piece, centre};
+use super::{Gather, receiver};
+use equilux_bake::treecode::EXACT;
+use equilux_formats::{Element, Rgb};
+use glam::DVec3;
+
+/// Luminance of linear RGB with BT.709 primaries (ITU-R BT.709, item 3.2).
+const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
+
+fn luminance(light: Rgb) -> f64 {
+    (0..3).map(|c| LUMINANCE[c] * light[c]).sum()
+}
+
+impl Gather {
+    /// Σ_j Y_j ω_j / Σ_j Y_j at the middle of each piece, with the luminance Y_j of F_ij B_j and the direction ω_j to the
+    /// middle of sender j; zero where there is no light.
+    pub fn directions(&self, pieces: &[Piece]) -> Vec<DVec3> {
+        let points: Vec<Option<Element>> = pieces.iter().map(middle).collect();
+        let known: Vec<Element> = points.iter().flatten().copied().collect();
+        let mut sums = vec![(DVec3::ZERO, 0.0); known.len()];
+        self.add_senders(&known, &self.glowing, &self.shining, EXACT, &mut sums);
+        self.add_senders(&known, self.sky.as_slice(), &self.shining, EXACT, &mut sums);
+        self.add_senders(&known, &self.scene, &self.reflected, self.resolution, &mut sums);
+        let mut sums = sums.into_iter();
+        let mut sums: Vec<(DVec3, f64)> =
+            points.iter().map(|p| p.and_then(|_| sums.next()).unwrap_or_default()).collect();
+        for lamp in self.lamps() {
+            for ((piece, sum), light) in
+                pieces.iter().zip(&mut sums).zip(lamp.irradiance(self.world(), pieces))
+            {
+                let to = lamp.position - centre(piece.corners, piece.normal).0;
+                add(sum, luminance(light), to);
+            }
+        }
+        sums.into_iter().map(|(sum, total)| if total > 0.0 { sum / total } else { DVec3::ZERO }).collect()
+    }
+
+    fn add_senders(
+        &self,
+        points: &[Element],
+        senders: &[usize],
+        sent: &[Rgb],
+        resolution: equilux_bake::treecode::Resolution,
+        sums: &mut [(DVec3, f64)],
+    ) {
+        if senders.is_empty() {
+            return;
+        }
+        let rows = self.rows(points, senders, resolution);
+        for ((number, point), sum) in points.iter().enumerate().zip(sums) {
+            for (node, form_factor) in rows.row(number) {
+                let sender = &self.world.nodes[node];
+                let to = (sender.low + sender.high) / 2.0 - point.centroid;
+                add(sum, form_factor * luminance(sent[node]), to);
+            }
+        }
+    }
+}
+
+fn add(sum: &mut (DVec3, f64), weight: f64, to: DVec3) {
+    sum.0 += to.normalize_or_zero() * weight;
+    sum.1 += weight;
+}
+
+fn middle(piece: &Piece) -> Option<Element> {
+    let (middle, _) = centre(piece.corners, piece.normal);
+    Some(receiver(middle, piece.normal, piece.plane.face_at(middle)?))
+}
