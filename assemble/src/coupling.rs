@@ -7,7 +7,7 @@ use crate::hull::intruders;
 use crate::older::Older;
 use crate::placed::Placed;
 use equilux_bake::cached::{Made, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from};
+use equilux_bake::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
@@ -253,8 +253,12 @@ impl Coupler<'_> {
         format!("{what} of {name} #{twins} in {}", self.file.display())
     }
 
-    /// What such a block of an instance depends on.
-    pub fn manifest(&self, instance: usize, what: &str) -> Manifest {
+    /// What the block between the sky and an instance depends on.
+    pub fn sky_manifest(&self, instance: usize) -> Manifest {
+        sky_manifest(&self.placed.instances, &self.known(), self.resolution, instance)
+    }
+
+    fn manifest(&self, instance: usize, what: &str) -> Manifest {
         placed_manifest(&self.placed.instances, &self.known(), self.resolution, instance, what)
     }
 

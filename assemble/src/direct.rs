@@ -6,12 +6,11 @@ use crate::coupling::Coupler;
 use crate::gather::average::Piece;
 use crate::gather::faces::Plane;
 use crate::gather::{Gather, Lights};
-use crate::placed::Placed;
 use equilux_bake::cached::cached;
 use equilux_bake::equilibrium::{added, apply};
-use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Geometry, Optics, Result, Rgb};
+use equilux_formats::{Optics, Result, Rgb, Rows};
 
 /// What lights send to elements.
 pub struct Direct {
@@ -51,7 +50,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
         let sky = world.add_far(dome);
         let seen = dome.clusters.means(sends);
         for (k, own) in irradiance.iter_mut().enumerate() {
-            let Some((rows, new)) = sky_block(coupler, &world, (sky, dome), k)? else { return Ok(None) };
+            let Some((rows, new)) = sky_block(coupler, &world, sky, k)? else { return Ok(None) };
             computed += new;
             own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum = added(*sum, h));
         }
@@ -60,15 +59,9 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
 }
 
 /// The form factors of an instance's elements to the sky's cells, and how many were computed.
-fn sky_block(
-    coupler: &Coupler,
-    world: &World,
-    (sky, dome): (usize, &Geometry),
-    instance: usize,
-) -> Result<Option<(equilux_formats::Rows, usize)>> {
+fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> Result<Option<(Rows, usize)>> {
     let name = coupler.name(instance, "sky");
-    let cells = dome.elements.len();
-    let manifest = coupler.manifest(instance, "sky").setting("sky's cells", cells);
+    let manifest = coupler.sky_manifest(instance);
     let mut computed = 0;
     let found = cached(coupler.store, &name, &manifest, coupler.monitor, || {
         coupler.monitor.begin(
@@ -82,7 +75,7 @@ fn sky_block(
             columns: world.nodes_of(sky),
             already: None,
             // Every cell has its own light, and every sky its own differences between them.
-            resolution: equilux_bake::treecode::Resolution { opening: 0.0, ..coupler.resolution },
+            resolution: Resolution { opening: 0.0, ..coupler.resolution },
             revision: None,
         };
         Ok(block(&request, coupler.monitor).map(|timed| {
@@ -111,10 +104,4 @@ pub fn whole(optics: &[Optics]) -> Optics {
 /// H with D.
 pub fn with_direct(irradiance: &mut [Rgb], direct: &[Vec<Rgb>]) {
     irradiance.iter_mut().zip(direct.iter().flatten()).for_each(|(h, &d)| *h = added(*h, d));
-}
-
-/// Whether the placed parts get light from nowhere.
-pub fn is_dark(placed: &Placed, lights: &Lights) -> bool {
-    lights.is_empty()
-        && (0..placed.instances.len()).all(|k| placed.optics_of(k).emission.iter().all(|e| *e == [0.0; 3]))
 }

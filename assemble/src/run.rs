@@ -23,7 +23,7 @@ use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::prepare::{Preparation, Prepared, prepare};
 use equilux_bake::{depfile, stamp};
 use equilux_formats::{Error, Optics, Result, Store, Swept};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Which pictures are drawn.
@@ -84,6 +84,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     check_writable(job, &scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
+    let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let stopped = || {
         let remedy = "run the same command again: what was finished is in the cache";
@@ -95,7 +96,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let coupled = couple(job, &placed, &store, monitor)?.ok_or_else(stopped)?;
     placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
 
-    let lights = lights(&scene.lights, job.light_units, job.sky.as_ref(), &placed.world)?;
+    let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
     let coupler = Coupler {
         placed: &placed,
         store: &store,
@@ -129,7 +130,9 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     };
     let Written { paths: outputs, notes } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {
-        depfile::write(path, &job.out.join(&scene.name).join(RESULT), &scene.sources)?;
+        let picture = job.sky.as_ref().and_then(Sky::file).map(Path::to_path_buf);
+        let sources: Vec<PathBuf> = scene.sources.iter().cloned().chain(picture).collect();
+        depfile::write(path, &job.out.join(&scene.name).join(RESULT), &sources)?;
     }
     let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     let run = Run {

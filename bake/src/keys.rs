@@ -2,7 +2,7 @@
 //! cache is needed.
 //!
 //! In go prepared parts in their places; out come keys: of each part and its light, and for each instance of the block that
-//! couples it with all others, of its own block with what stands inside it, and of its light with that. Not every instance
+//! couples it with all others, of that with the sky, of its own block with what stands inside it, and of its light with that. Not every instance
 //! has all of these: whether something stands inside one does not matter here, as a key under which nothing lies
 //! harms nobody.
 
@@ -20,6 +20,9 @@ use std::path::PathBuf;
 pub const COUPLING: &str = "coupling";
 /// An instance's own block with what stands inside it, in manifests and in the cache.
 pub const CORRECTED: &str = "corrected self block";
+
+/// Cells along each edge of the cube that a sky is cut into: 7.5° each.
+pub const SKY_CELLS: usize = 12;
 
 /// Drop from the cache whatever none of the scenes in `files` asks for. Fails and drops nothing if one of them cannot be
 /// read, for then it is not known what it needs.
@@ -52,6 +55,7 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
         let own = part_keys[scene.instances[number].part.index()];
         let light = |block: Key| light_manifest(block.into(), &optics, part.solver).key();
         let [coupling, corrected] = [key(COUPLING), key(CORRECTED)];
+        keys.insert(sky_manifest(&scene.instances, &parts, resolution, number).key());
         let target = store.target(&corrected);
         keys.extend([coupling, store.target(&coupling), corrected, target, light(target), light(own)]);
     }
@@ -142,6 +146,16 @@ pub fn placed_manifest(
         manifest = manifest.detail(format!("instance {number} ({})", instances[number].name), seen);
     }
     manifest
+}
+
+/// The same of the block between the sky's cells and an instance.
+pub fn sky_manifest(
+    instances: &[Instance],
+    parts: &[Known],
+    resolution: Resolution,
+    instance: usize,
+) -> Manifest {
+    placed_manifest(instances, parts, resolution, instance, "sky").setting("sky's cells", SKY_CELLS)
 }
 
 /// Every other instance by its number, as one instance sees it.

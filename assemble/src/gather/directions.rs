@@ -3,7 +3,7 @@
 
 use super::average::{Piece, centre};
 use super::{Gather, receiver};
-use equilux_bake::treecode::EXACT;
+use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
@@ -43,7 +43,7 @@ impl Gather {
         points: &[Element],
         senders: &[usize],
         sent: &[Rgb],
-        resolution: equilux_bake::treecode::Resolution,
+        resolution: Resolution,
         sums: &mut [(DVec3, f64)],
     ) {
         if senders.is_empty() {

@@ -33,8 +33,11 @@ pub struct Cone {
     offset: f64,
 }
 
-/// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-7.
-const FAR: f64 = 1e7;
+/// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-6.
+const FAR: f64 = 1e6;
+
+/// The cosines of a spot's cones differ by at least this.
+const SHARP: f64 = 1e-9;
 
 /// Polygons that a spot's edge may pass through are cut this often along each side.
 const CUTS: usize = 4;
@@ -42,22 +45,21 @@ const CUTS: usize = 4;
 impl Lamp {
     /// The lamp of a light of a scene around `centre` of this `size`, metres.
     pub fn of(light: &PunctualLight, centre: DVec3, size: f64) -> Self {
-        let Self { position, intensity, cone } =
-            Self { position: light.position, intensity: light.intensity, cone: None };
+        let point = Self { position: light.position, intensity: light.intensity, cone: None };
         match light.kind {
-            LightKind::Point => Self { position, intensity, cone },
+            LightKind::Point => point,
             LightKind::Spot { inner, outer } => {
-                let scale = 1.0 / (inner.cos() - outer.cos()).max(1e-9);
-                let cone = Cone { direction: light.direction, scale, offset: -outer.cos() * scale };
-                Self { position, intensity, cone: Some(cone) }
+                // As the extension has it, where the cones may coincide.
+                let scale = 1.0 / (inner.cos() - outer.cos()).max(SHARP);
+                Self {
+                    cone: Some(Cone { direction: light.direction, scale, offset: -outer.cos() * scale }),
+                    ..point
+                }
             }
             LightKind::Directional => {
                 let distance = FAR * size;
-                Self {
-                    position: centre - light.direction * distance,
-                    intensity: intensity.map(|lux| lux * distance * distance),
-                    cone,
-                }
+                let position = centre - light.direction * distance;
+                Self { position, intensity: light.intensity.map(|lux| lux * distance * distance), ..point }
             }
         }
     }

@@ -2,13 +2,11 @@
 
 use super::Lights;
 use super::lamps::Lamp;
-use super::sky::{Sky, dome};
+use super::sky::{Radiances, dome};
 use equilux_bake::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
 use equilux_bake::world::World;
-use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, LightKind, MaterialId, PunctualLight, Result, Rgb,
-};
+use equilux_formats::{Corners, Element, Face, FaceId, Geometry, LightKind, MaterialId, PunctualLight, Rgb};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -36,23 +34,20 @@ const KITES: usize = 8;
 pub fn lights(
     sources: &[PunctualLight],
     units: LightUnits,
-    sky: Option<&Sky>,
+    sky: Option<&Radiances>,
     world: &World,
-) -> Result<Lights> {
+) -> Lights {
     let (centre, size) = frame(world);
     let sources: Vec<PunctualLight> = sources.iter().map(|light| in_watts(light, units)).collect();
     let is_sun = |light: &&PunctualLight| matches!(light.kind, LightKind::Directional) && light.angle > 0.0;
     let suns = sources.iter().filter(is_sun).map(|light| sun(light, centre, size));
     let lamps = sources.iter().filter(|light| !is_sun(light)).map(|light| Lamp::of(light, centre, size));
-    let sky = match sky {
-        Some(sky) => {
-            let dome = dome(centre, size);
-            let sends = sky.radiosity(&dome, centre)?;
-            Some((dome, sends))
-        }
-        None => None,
-    };
-    Ok(Lights { lamps: lamps.collect(), suns: suns.collect(), sky })
+    let sky = sky.map(|sky| {
+        let dome = dome(centre, size);
+        let sends = sky.radiosity(&dome, centre);
+        (dome, sends)
+    });
+    Lights { lamps: lamps.collect(), suns: suns.collect(), sky }
 }
 
 /// The middle of a world, and how far it reaches.

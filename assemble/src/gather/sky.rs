@@ -3,6 +3,7 @@
 //! What a sky sends changes no visibility: its cells stay, and each sends what the sky has there on average.
 
 use equilux_bake::clusters::hierarchy;
+use equilux_bake::keys::SKY_CELLS;
 use equilux_formats::{Corners, Element, Error, Face, FaceId, Geometry, MaterialId, Result, Rgb};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
@@ -16,9 +17,6 @@ pub enum Sky {
     /// An equirectangular picture of radiances, .hdr or .exr: its middle is −Z, its top +Y.
     Picture(PathBuf),
 }
-
-/// Cells along each edge of the cube: 7.5° each.
-pub const CELLS: usize = 12;
 
 /// The cube's sides are this many sizes of the scene away, so directions differ by less than 1e-3.
 const FAR: f64 = 1e3;
@@ -35,9 +33,9 @@ pub fn dome(centre: DVec3, size: f64) -> Geometry {
             let at = |s: f64, t: f64| centre + (n + u * s + v * t) * (FAR * size);
             let face = FaceId(faces.len() as u32);
             faces.push(Face::new(vec![at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]));
-            let line = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / CELLS as f64 - 1.0)).tan();
-            for j in 0..CELLS {
-                for i in 0..CELLS {
+            let line = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / SKY_CELLS as f64 - 1.0)).tan();
+            for j in 0..SKY_CELLS {
+                for i in 0..SKY_CELLS {
                     let [(s0, t0), (s1, t1)] = [(line(i), line(j)), (line(i + 1), line(j + 1))];
                     let corners = Corners::quad([at(s0, t0), at(s1, t0), at(s1, t1), at(s0, t1)]);
                     elements.push(Element::new(corners, MaterialId(0), face));
@@ -49,21 +47,45 @@ pub fn dome(centre: DVec3, size: f64) -> Geometry {
     Geometry { elements: order.into_iter().map(|i| elements[i]).collect(), faces, clusters }
 }
 
+/// The radiances of a sky, in memory.
+pub enum Radiances {
+    /// The same everywhere.
+    Uniform(Rgb),
+    /// By direction.
+    Picture(Picture),
+}
+
 impl Sky {
-    /// What each cell of a dome around `centre` sends, W/m². Fails where the picture cannot be read.
-    pub fn radiosity(&self, dome: &Geometry, centre: DVec3) -> Result<Vec<Rgb>> {
+    /// The file it is in, if it is in one.
+    pub fn file(&self) -> Option<&Path> {
         match self {
-            Self::Uniform(radiance) => Ok(vec![radiance.map(|l| PI * l); dome.elements.len()]),
-            Self::Picture(file) => {
-                let picture = Picture::read(file)?;
-                Ok(dome.elements.iter().map(|cell| picture.average(cell, centre).map(|l| PI * l)).collect())
-            }
+            Self::Uniform(_) => None,
+            Self::Picture(file) => Some(file),
         }
+    }
+
+    /// Its radiances. Fails where the picture cannot be read.
+    pub fn read(&self) -> Result<Radiances> {
+        Ok(match self {
+            Self::Uniform(radiance) => Radiances::Uniform(*radiance),
+            Self::Picture(file) => Radiances::Picture(Picture::read(file)?),
+        })
+    }
+}
+
+impl Radiances {
+    /// What each cell of a dome around `centre` sends, W/m².
+    pub fn radiosity(&self, dome: &Geometry, centre: DVec3) -> Vec<Rgb> {
+        let radiance = |cell: &Element| match self {
+            Self::Uniform(radiance) => *radiance,
+            Self::Picture(picture) => picture.average(cell, centre),
+        };
+        dome.elements.iter().map(|cell| radiance(cell).map(|l| PI * l)).collect()
     }
 }
 
 /// Radiances by direction.
-struct Picture {
+pub struct Picture {
     width: usize,
     height: usize,
     pixels: Vec<[f32; 3]>,
@@ -84,7 +106,7 @@ impl Picture {
 
     /// The mean over a cell, by points about as dense as the pixels.
     fn average(&self, cell: &Element, centre: DVec3) -> Rgb {
-        let points = (self.width / (4 * CELLS)).clamp(4, 64);
+        let points = (self.width / (4 * SKY_CELLS)).clamp(4, 64);
         let &[a, b, c, d] = cell.corners.as_slice() else { unreachable!("cells have four corners") };
         let (mut sum, mut total) = ([0.0; 3], 0.0);
         for k in 0..points * points {
