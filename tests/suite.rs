@@ -9,4 +9,5 @@ mod lights;
 mod parts;
 mod physics;
 mod stiff;
+mod textures;
 mod truth;

@@ -66,7 +66,7 @@ impl Placed {
     /// Reflectance and emission of an instance's elements as it is repainted, but for its emission scale.
     pub fn paint_of(&self, instance: usize) -> Optics {
         let part = &self.part_of(instance).part;
-        repainted(&part.geometry, &part.optics, &self.instances[instance].repainted)
+        repainted(&part.geometry, &part.optics, &part.tints, &self.instances[instance].repainted)
     }
 
     /// The same with the instance's emission scale.

@@ -4,7 +4,7 @@ use crate::clusters;
 use crate::merge::{Merged, merge};
 use crate::planes::FLATNESS;
 use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted,
+    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted, Rgb, Tints,
 };
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -71,23 +71,30 @@ pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
 }
 
 /// Reflectance and emission of every element.
-pub fn optics(geometry: &Geometry, materials: &[Material]) -> Optics {
+pub fn optics(geometry: &Geometry, materials: &[Material], tints: &Tints) -> Optics {
     let of = |element: &Element| &materials[element.material.index()];
+    let (reflectance, emission) = (tints.reflectance.iter(), tints.emission.iter());
+    let elements = || geometry.elements.iter().map(of);
     Optics {
-        reflectance: geometry.elements.iter().map(|e| of(e).reflectance).collect(),
-        emission: geometry.elements.iter().map(|e| of(e).emission).collect(),
+        reflectance: elements().zip(reflectance).map(|(m, &tint)| tinted(m.reflectance, tint)).collect(),
+        emission: elements().zip(emission).map(|(m, &tint)| tinted(m.emission, tint)).collect(),
     }
 }
 
-/// The same where some of the materials look otherwise.
-pub fn repainted(geometry: &Geometry, optics: &Optics, repainted: &[Repainted]) -> Optics {
+/// The same where some of the materials look otherwise: textures go on multiplying the new colours.
+pub fn repainted(geometry: &Geometry, optics: &Optics, tints: &Tints, repainted: &[Repainted]) -> Optics {
     let mut here = optics.clone();
     for (i, element) in geometry.elements.iter().enumerate() {
         if let Some(new) = repainted.iter().find(|new| new.material == element.material) {
-            (here.reflectance[i], here.emission[i]) = (new.reflectance, new.emission);
+            here.reflectance[i] = tinted(new.reflectance, tints.reflectance[i]);
+            here.emission[i] = tinted(new.emission, tints.emission[i]);
         }
     }
     here
+}
+
+fn tinted(colour: Rgb, tint: Rgb) -> Rgb {
+    std::array::from_fn(|c| colour[c] * tint[c])
 }
 
 /// A triangle or parallelogram of one material that is cut up as a whole.

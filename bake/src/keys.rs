@@ -51,7 +51,7 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
     for number in 0..scene.instances.len() {
         let key = |what| placed_manifest(&scene.instances, &parts, resolution, number, what).key();
         let part = &scene.parts[scene.instances[number].part.index()];
-        let optics = repainted(&part.geometry, &part.optics, &scene.instances[number].repainted);
+        let optics = repainted(&part.geometry, &part.optics, &part.tints, &scene.instances[number].repainted);
         let own = part_keys[scene.instances[number].part.index()];
         let light = |block: Key| light_manifest(block.into(), &optics, part.solver).key();
         let [coupling, corrected] = [key(COUPLING), key(CORRECTED)];

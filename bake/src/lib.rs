@@ -26,6 +26,7 @@ pub mod prepare;
 pub mod shaft;
 pub mod solids;
 pub mod stamp;
+pub mod textures;
 pub mod treecode;
 pub mod visibility;
 pub mod world;

@@ -100,6 +100,7 @@ impl Oven<'_> {
             name: part.name.clone(),
             geometry: part.geometry.clone(),
             optics: part.optics.clone(),
+            tints: part.tints.clone(),
             materials: part.materials.clone(),
             self_block: geometry.self_block,
             local,
@@ -112,7 +113,7 @@ impl Oven<'_> {
     /// serves: it tells how the part answers light, which depends on reflectance alone.
     pub fn relight(&self, baked: &Baked, instance: &Instance) -> Result<Option<(LocalEquilibrium, Origin)>> {
         let part = &baked.part;
-        let optics = repainted(&part.geometry, &part.optics, &instance.repainted);
+        let optics = repainted(&part.geometry, &part.optics, &part.tints, &instance.repainted);
         if optics.reflectance == part.optics.reflectance {
             return Ok(None);
         }

@@ -4,11 +4,12 @@ use crate::bisect::{Cut, bisect, cut_all};
 use crate::clusters;
 use crate::elements::{ElementSize, area, default_size, optics, subdivide};
 use crate::equilibrium::default_solver;
+use crate::textures::tints;
 use crate::treecode::Resolution;
 use crate::world::World;
 use equilux_formats::{
     Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, PartId,
-    Result, Scene,
+    Result, Scene, TexturedTriangle, Tints,
 };
 use glam::{DAffine3, DVec3};
 
@@ -54,6 +55,8 @@ pub struct PreparedPart {
     pub geometry: Geometry,
     /// Reflectance and emission of the elements.
     pub optics: Optics,
+    /// What textures make of these, one row an element.
+    pub tints: Tints,
     /// The materials that elements name.
     pub materials: Vec<Material>,
     /// How large its elements may be.
@@ -73,10 +76,12 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
         let size = part.element_size.map_or(element_size, ElementSize::Metres);
         refuse_too_many(scene, area(part), size)?;
         let geometry = subdivide(part, size);
+        let tints = tints(&geometry, &part.materials, &part.textured);
         let solver = part.local_solver.or(wanted.local_solver);
         parts.push(PreparedPart {
             name: part.name.clone(),
-            optics: optics(&geometry, &part.materials),
+            optics: optics(&geometry, &part.materials, &tints),
+            tints,
             solver: solver.unwrap_or_else(|| default_solver(geometry.elements.len())),
             materials: part.materials.clone(),
             element_size: size,
@@ -86,8 +91,8 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     let authored = Prepared { parts, instances: scene.instances.clone(), element_size };
     Ok(match &wanted.division {
         Division::Authored => authored,
-        Division::Bisect(count) => divided(&authored, wanted, |whole| bisect(whole, *count)),
-        Division::Cuts(planes) => divided(&authored, wanted, |whole| cut_all(whole, planes)),
+        Division::Bisect(count) => divided(&authored, wanted, scene, |whole| bisect(whole, *count)),
+        Division::Cuts(planes) => divided(&authored, wanted, scene, |whole| cut_all(whole, planes)),
     })
 }
 
@@ -114,12 +119,14 @@ fn refuse_too_many(scene: &Scene, area: f64, size: ElementSize) -> Result<()> {
 fn divided(
     authored: &Prepared,
     wanted: &Preparation,
+    scene: &Scene,
     divide: impl FnOnce(Geometry) -> Vec<Geometry>,
 ) -> Prepared {
-    let (whole, materials) = merged(authored);
+    let Merged { whole, materials, textured } = merged(authored, scene);
     let (mut parts, mut instances) = (Vec::new(), Vec::new());
     for (number, cell) in divide(whole).into_iter().enumerate() {
         let name = format!("cell {}", number + 1);
+        let tints = tints(&cell, &materials, &textured);
         let (geometry, origin) = recentred(cell);
         instances.push(Instance {
             name: name.clone(),
@@ -131,7 +138,8 @@ fn divided(
         let solver = wanted.local_solver.unwrap_or_else(|| default_solver(geometry.elements.len()));
         parts.push(PreparedPart {
             name,
-            optics: optics(&geometry, &materials),
+            optics: optics(&geometry, &materials, &tints),
+            tints,
             geometry,
             materials: materials.clone(),
             element_size: authored.element_size,
@@ -142,18 +150,28 @@ fn divided(
 }
 
 /// All instances in scene coordinates, with one list of materials, as each instance has them.
-fn merged(prepared: &Prepared) -> (Geometry, Vec<Material>) {
+struct Merged {
+    whole: Geometry,
+    materials: Vec<Material>,
+    textured: Vec<TexturedTriangle>,
+}
+
+fn merged(prepared: &Prepared, scene: &Scene) -> Merged {
     let part = |instance: &Instance| &prepared.parts[instance.part.index()];
     let world = World::new(prepared.instances.iter().map(|i| (&part(i).geometry, i.placement)));
     let mut materials: Vec<Material> = Vec::new();
-    let mut elements = Vec::new();
+    let (mut elements, mut textured) = (Vec::new(), Vec::new());
     for (number, instance) in prepared.instances.iter().enumerate() {
         let here = instance.materials(&part(instance).materials);
         let own: Vec<MaterialId> = here.into_iter().map(|m| number_of(&mut materials, m)).collect();
         let placed = world.elements[world.elements_of(number)].iter();
         elements.extend(placed.map(|e| Element { material: own[e.material.index()], ..*e }));
+        textured.extend(scene.parts[instance.part.index()].textured.iter().map(|triangle| {
+            let material = own[triangle.material.index()];
+            TexturedTriangle { material, ..triangle.placed(instance.placement) }
+        }));
     }
-    (clusters::geometry(elements, world.faces), materials)
+    Merged { whole: clusters::geometry(elements, world.faces), materials, textured }
 }
 
 fn number_of(materials: &mut Vec<Material>, material: Material) -> MaterialId {

@@ -484,18 +484,22 @@ fn materials_become_reflectance_and_emission() {
 
 #[test]
 fn what_radiosity_has_no_use_for_is_noted() {
-    let texture = json!({ "baseColorTexture": { "index": 0 }, "metallicFactor": 0 });
+    // The image of a texture that is not used is not read.
     let image = json!([{ "uri": "missing.png" }]);
     let square = || Gltf::square_at(json!({ "name": "hall" }));
     let without_material =
         square().set("/meshes/0/primitives/0", json!({ "attributes": { "POSITION": 0 }, "indices": 1 }));
-    let textured = square().set("/materials/0/pbrMetallicRoughness", texture).set("/images", image);
+    let textured = square().set("/materials/0/normalTexture", json!({ "index": 0 })).set("/images", image);
     for (note, gltf) in [
         ("mesh square: no material", without_material),
         ("material grey: textures are ignored", textured.set("/textures", json!([{ "source": 0 }]))),
         (
             "material grey: metallic",
             square().set("/materials/0/pbrMetallicRoughness/metallicFactor", json!(0.5)),
+        ),
+        (
+            "material grey: lets light through",
+            square().set("/materials/0/extensions", json!({ "KHR_materials_transmission": {} })),
         ),
         ("material grey: transparent", square().set("/materials/0/alphaMode", json!("BLEND"))),
         (

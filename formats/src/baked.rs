@@ -1,6 +1,6 @@
 //! A part after baking: its geometry, its own block of form factors, and its light when nothing arrives from outside.
 
-use crate::geometry::{Geometry, Optics};
+use crate::geometry::{Geometry, Optics, Tints};
 use crate::part::{LocalSolver, Material};
 use crate::rows::{Rgb, Rows};
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,8 @@ pub struct BakedPart {
     pub geometry: Geometry,
     /// Reflectance and emission, one row an element.
     pub optics: Optics,
+    /// What textures make of these, one row an element.
+    pub tints: Tints,
     /// The materials, for those who draw or export the part.
     pub materials: Vec<Material>,
     /// F_kk with nothing but the part itself in the way, `elements × elements`.

@@ -144,6 +144,23 @@ pub struct Geometry {
     pub clusters: ClusterTree,
 }
 
+/// What textures and vertex colours multiply each element's reflectance and emission by: averages over the element, one row an
+/// element, linear RGB, 0..1.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Tints {
+    /// On the reflectance.
+    pub reflectance: Vec<Rgb>,
+    /// On the emission.
+    pub emission: Vec<Rgb>,
+}
+
+impl Tints {
+    /// Those of so many elements without textures.
+    pub fn plain(elements: usize) -> Self {
+        Self { reflectance: vec![[1.0; 3]; elements], emission: vec![[1.0; 3]; elements] }
+    }
+}
+
 /// What form factors do not depend on: reflectance and emission, one row an element, linear RGB.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Optics {

@@ -2,6 +2,7 @@
 
 use crate::geometry::Corners;
 use crate::ids::MaterialId;
+use crate::texture::{TexturedTriangle, Textures};
 use glam::{DAffine3, DVec2};
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +17,8 @@ pub struct Part {
     pub surfaces: Vec<Surface>,
     /// The materials that the surfaces name.
     pub materials: Vec<Material>,
+    /// How colours vary over those surfaces on which they do, by the triangles of the source mesh.
+    pub textured: Vec<TexturedTriangle>,
     /// Element size asked for by the file's author (`extras.element_size`), metres.
     pub element_size: Option<f64>,
     /// Local solver asked for by the file's author (`extras.local_solver`).
@@ -61,16 +64,18 @@ impl Surface {
 }
 
 /// What a surface does with light. Linear RGB, BT.709 primaries.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The material's name in the file, or empty.
     pub name: String,
-    /// Diffuse reflectance ρ, 0..1, from glTF's base colour.
+    /// Diffuse reflectance ρ, 0..1, from glTF's base colour factor.
     pub reflectance: [f64; 3],
     /// Emission E = πL, W/m², where the radiance L is emissiveFactor × emissive strength.
     pub emission: [f64; 3],
     /// Whether the back reflects and emits as the front does; a one-sided surface is black on its back.
     pub double_sided: bool,
+    /// What both vary by.
+    pub textures: Textures,
 }
 
 /// How a part's own equilibrium is found. The answer does not depend on it.

@@ -11,7 +11,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
 use equilux_bake::prepare::PreparedPart;
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Scene, Store};
+use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Scene, Store, Tints};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{lamp, paint};
 use equilux_tests::shapes::{coupling, joined, room, solid};
@@ -31,9 +31,11 @@ fn bench() -> Part {
 
 fn prepared(name: &str, part: &Part, size: f64) -> PreparedPart {
     let geometry = subdivide(part, ElementSize::Metres(size));
+    let tints = Tints::plain(geometry.elements.len());
     PreparedPart {
         name: name.into(),
-        optics: optics(&geometry, &part.materials),
+        optics: optics(&geometry, &part.materials, &tints),
+        tints,
         materials: part.materials.clone(),
         element_size: ElementSize::Metres(size),
         solver: LocalSolver::Direct,

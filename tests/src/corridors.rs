@@ -6,7 +6,7 @@ use crate::shapes::{grey, joined, part, rectangle, solid};
 use equilux_bake::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::treecode::Resolution;
-use equilux_formats::{Geometry, Part};
+use equilux_formats::{Geometry, Optics, Part, Tints};
 use glam::{DVec3, dvec3};
 
 /// Width along the row, height and depth of a room, metres.
@@ -18,7 +18,7 @@ pub fn corridor(rooms: usize, open: f64, size: f64, resolution: Resolution) -> A
     let parts: Vec<Part> = (0..rooms).map(|k| room(k, rooms, open)).collect();
     let geometry = |part: &Part| subdivide(part, ElementSize::Metres(size));
     let geometries: Vec<Geometry> = parts.iter().map(geometry).collect();
-    let optics = parts.iter().zip(&geometries).map(|(part, geometry)| optics(geometry, &part.materials));
+    let optics = parts.iter().zip(&geometries).map(|(part, geometry)| plain(geometry, part));
     let optics = optics.collect();
     Assembled::new(geometries, optics, resolution, None)
 }
@@ -28,7 +28,7 @@ pub fn level(rooms: usize, size: f64, resolution: Resolution) -> Assembled {
     let parts = furnished(rooms);
     let geometries: Vec<Geometry> =
         parts.iter().map(|part| subdivide(part, ElementSize::Metres(size))).collect();
-    let optics = parts.iter().zip(&geometries).map(|(part, geometry)| optics(geometry, &part.materials));
+    let optics = parts.iter().zip(&geometries).map(|(part, geometry)| plain(geometry, part));
     let optics = optics.collect();
     Assembled::new(geometries, optics, resolution, None)
 }
@@ -37,8 +37,13 @@ pub fn level(rooms: usize, size: f64, resolution: Resolution) -> Assembled {
 pub fn cells(rooms: usize, count: usize, size: f64, resolution: Resolution) -> Assembled {
     let whole = joined(furnished(rooms));
     let cells = bisect(subdivide(&whole, ElementSize::Metres(size)), count);
-    let optics = cells.iter().map(|cell| optics(cell, &whole.materials)).collect();
+    let optics = cells.iter().map(|cell| plain(cell, &whole)).collect();
     Assembled::new(cells, optics, resolution, None)
+}
+
+/// Reflectance and emission of a part without textures.
+fn plain(geometry: &Geometry, part: &Part) -> Optics {
+    optics(geometry, &part.materials, &Tints::plain(geometry.elements.len()))
 }
 
 fn room(number: usize, rooms: usize, open: f64) -> Part {

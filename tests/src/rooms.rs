@@ -2,12 +2,12 @@
 
 use crate::model::Node;
 use crate::shapes::{joined, part, rectangle, room, solid};
-use equilux_formats::{Material, Part};
+use equilux_formats::{Material, Part, Textures};
 use glam::{DVec3, dvec3};
 
 /// A material of this reflectance, channel by channel, without emission.
 pub fn paint(reflectance: [f64; 3]) -> Material {
-    Material { name: "paint".into(), reflectance, emission: [0.0; 3], double_sided: false }
+    Material { name: "paint".into(), reflectance, emission: [0.0; 3], double_sided: false, textures: Textures::default() }
 }
 
 /// A dark lamp of this emission, W/m².

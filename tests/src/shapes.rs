@@ -4,7 +4,7 @@ use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rows, Surface};
+use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rows, Surface, Textures};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// A grey material: reflectance and emission the same in all channels.
@@ -14,6 +14,7 @@ pub fn grey(reflectance: f64, emission: f64) -> Material {
         reflectance: [reflectance; 3],
         emission: [emission; 3],
         double_sided: false,
+        textures: Textures::default(),
     }
 }
 
@@ -23,6 +24,7 @@ pub fn part(material: Material) -> Part {
         name: "part".into(),
         surfaces: vec![],
         materials: vec![material],
+        textured: vec![],
         element_size: None,
         local_solver: None,
     }

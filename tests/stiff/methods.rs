@@ -6,7 +6,7 @@ use equilux_bake::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{LocalSolver, Part, Rgb};
+use equilux_formats::{LocalSolver, Part, Rgb, Tints};
 use equilux_tests::assembled::Assembled;
 use equilux_tests::rooms::paint;
 use equilux_tests::shapes::{joined, moved, room, solid};
@@ -45,7 +45,7 @@ fn colour() -> impl Strategy<Value = [f64; 3]> {
 
 fn assembled(scene: &Part, cells: usize, solver: LocalSolver) -> Assembled {
     let cells = bisect(subdivide(scene, ElementSize::Metres(1.0)), cells);
-    let optics = cells.iter().map(|cell| optics(cell, &scene.materials)).collect();
+    let optics = cells.iter().map(|cell| optics(cell, &scene.materials, &Tints::plain(cell.elements.len()))).collect();
     Assembled::new(cells, optics, EXACT, Some(solver))
 }
 

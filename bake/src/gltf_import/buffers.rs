@@ -33,14 +33,7 @@ fn read_buffer(
                 "export the file again, as .glb or with its .bin",
             )
         })?,
-        Source::Uri(uri) => match uri.strip_prefix("data:") {
-            Some(data) => decode(path, buffer, data)?,
-            None => {
-                let uri = percent_decode_str(uri).decode_utf8_lossy();
-                let file = files.resolve(path, &uri)?;
-                files.read(&file)?
-            }
-        },
+        Source::Uri(uri) => uri_bytes(files, path, uri, &format!("buffer {}", buffer.index()))?,
     };
     if bytes.len() < buffer.length() {
         return Err(Error::new(
@@ -54,12 +47,22 @@ fn read_buffer(
     Ok(bytes)
 }
 
-fn decode(path: &Path, buffer: &gltf::Buffer, data: &str) -> Result<Vec<u8>> {
+/// What `uri` in the file at `path` means: data, or another file. `what` says in errors what for.
+pub(super) fn uri_bytes(files: &mut Files, path: &Path, uri: &str, what: &str) -> Result<Vec<u8>> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        return decode(path, what, data);
+    }
+    let uri = percent_decode_str(uri).decode_utf8_lossy();
+    let file = files.resolve(path, &uri)?;
+    files.read(&file)
+}
+
+fn decode(path: &Path, what: &str, data: &str) -> Result<Vec<u8>> {
     let broken = |why: String| {
         Error::new(
             path,
-            format!("buffer {} with a data URI that {why}", buffer.index()),
-            "data:application/octet-stream;base64,…",
+            format!("{what} with a data URI that {why}"),
+            "data:…;base64,…",
             "export the file again",
         )
     };

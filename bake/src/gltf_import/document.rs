@@ -3,11 +3,14 @@
 
 use super::buffers::read_buffers;
 use super::files::Files;
+use super::images::read_images;
 use super::instancing::INSTANCING;
 use super::notes::Notes;
 use equilux_formats::{Error, Result};
 use gltf::json;
+use image::RgbaImage;
 use serde::Deserialize;
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Extensions a file may require.
@@ -28,10 +31,12 @@ pub(super) struct Document {
     pub(super) gltf: gltf::Document,
     /// The bytes of its buffers, each as long as the JSON says.
     pub(super) buffers: Vec<Vec<u8>>,
+    /// Those of its images that colour what is baked.
+    pub(super) images: HashMap<usize, RgbaImage>,
 }
 
 impl Document {
-    /// Reads `path` and its buffers. What the file holds but nobody here uses is noted.
+    /// Reads `path`, its buffers and its images. What the file holds but nobody here uses is noted.
     pub(super) fn read(files: &mut Files, path: &Path, notes: &mut Notes) -> Result<Self> {
         let bytes = files.read(path)?;
         let (json, binary) = split(path, &bytes)?;
@@ -39,7 +44,8 @@ impl Document {
         let gltf = parse(path, &json)?;
         note_unused(path, &gltf, notes);
         let buffers = read_buffers(files, path, &gltf, binary.as_deref())?;
-        Ok(Self { path: path.to_path_buf(), gltf, buffers })
+        let images = read_images(files, path, &gltf, &buffers)?;
+        Ok(Self { path: path.to_path_buf(), gltf, buffers, images })
     }
 
     /// An error about this file.

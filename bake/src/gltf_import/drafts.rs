@@ -8,7 +8,7 @@ use super::meshes::Mesh;
 use super::notes::Notes;
 use super::repaint::Look;
 use super::surfaces::Dropped;
-use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface};
+use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface, TexturedTriangle};
 use glam::DAffine3;
 
 /// No part has more surfaces: a few kilobytes of nodes that share a mesh could ask for any number.
@@ -51,6 +51,7 @@ impl Settings {
 #[derive(Default)]
 pub(super) struct Draft {
     pub(super) surfaces: Vec<Surface>,
+    pub(super) textured: Vec<TexturedTriangle>,
     pub(super) paints: Paints,
     pub(super) lights: Vec<PunctualLight>,
     pub(super) settings: Settings,
@@ -66,9 +67,11 @@ impl Draft {
         placement: DAffine3,
         look: &Look,
     ) -> Result<()> {
-        for (surfaces, paint) in &mesh.primitives {
-            let material = self.paints.id(look.on(paint));
-            self.add(document, surfaces.iter().map(|surface| Surface { material, ..*surface }), placement)?;
+        for primitive in &mesh.primitives {
+            let material = self.paints.id(look.on(&primitive.paint));
+            let surfaces = primitive.surfaces.iter().map(|surface| Surface { material, ..*surface });
+            self.add(document, surfaces, placement)?;
+            self.add_textured(&primitive.textured, |_| material, placement);
         }
         self.dropped += mesh.dropped;
         Ok(())
@@ -87,9 +90,23 @@ impl Draft {
         let surfaces = other.surfaces.iter();
         let surfaces = surfaces.map(|s| Surface { material: materials[s.material.index()], ..*s });
         self.add(document, surfaces, placement)?;
+        self.add_textured(&other.textured, |old| materials[old.index()], placement);
         self.lights.extend(other.lights.iter().map(|light| moved(light, placement, look.emission_scale)));
         self.dropped += other.dropped;
         Ok(())
+    }
+
+    fn add_textured(
+        &mut self,
+        triangles: &[TexturedTriangle],
+        material: impl Fn(MaterialId) -> MaterialId,
+        placement: DAffine3,
+    ) {
+        let placed = |t: &TexturedTriangle| TexturedTriangle {
+            material: material(t.material),
+            ..t.placed(placement)
+        };
+        self.textured.extend(triangles.iter().map(placed));
     }
 
     fn add(

@@ -1,44 +1,82 @@
 //! What a surface does with light, from glTF's metallic-roughness material: base colour → reflectance, emissive
-//! factor × strength × π → emission. All else a material may hold is ignored and noted. What authors repaint is told by
-//! [`super::repaint`].
+//! factor × strength × π → emission, and the textures on both. All else a material may hold is ignored and noted. What
+//! authors repaint is told by [`super::repaint`].
+//!
+//! What a transparent surface lets through is lost here: its reflectance counts by the share that is there, and it
+//! blocks light as a whole.
 
+use super::coordinates::Use;
 use super::document::Document;
+use super::images::{self, Alpha};
 use super::notes::Notes;
-use equilux_formats::{Material, Result};
+use equilux_formats::{Material, Result, Textures};
+use gltf::material::AlphaMode;
 use std::f64::consts::PI;
+
+/// The extension for glass.
+const TRANSMISSION: &str = "KHR_materials_transmission";
 
 /// A material as a file has it. Factor and strength of the emission are kept apart, as either may be repainted.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Paint {
     pub(super) name: String,
-    pub(super) reflectance: [f64; 3],
+    /// Base colour, alpha last.
+    pub(super) base_colour: [f64; 4],
+    /// Whether its alpha is the share of the surface that is there.
+    pub(super) blends: bool,
     pub(super) emissive_factor: [f64; 3],
     /// Emission scales of nodes included.
     pub(super) emissive_strength: f64,
     pub(super) double_sided: bool,
+    pub(super) textures: Textures,
 }
 
 impl Paint {
     /// What it does with light.
     pub(super) fn material(&self) -> Material {
+        let [red, green, blue, alpha] = self.base_colour;
+        let there = if self.blends { alpha } else { 1.0 };
         Material {
             name: self.name.clone(),
-            reflectance: self.reflectance,
+            reflectance: [red, green, blue].map(|rho| rho * there),
             emission: self.emissive_factor.map(|factor| PI * (factor * self.emissive_strength)),
             double_sided: self.double_sided,
+            textures: self.textures.clone(),
         }
     }
 }
 
+/// How a material uses its textures.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Uses {
+    pub(super) reflectance: Option<Use>,
+    pub(super) emission: Option<Use>,
+}
+
+impl Uses {
+    /// What `source` says.
+    pub(super) fn of(source: &gltf::Material) -> Self {
+        let reflectance = source.pbr_metallic_roughness().base_color_texture();
+        let of = |info: Option<gltf::texture::Info>| info.as_ref().map(Use::of);
+        Self { reflectance: of(reflectance), emission: of(source.emissive_texture()) }
+    }
+}
+
 /// The paint that `source` is.
-pub(super) fn paint(document: &Document, source: &gltf::Material, notes: &mut Notes) -> Result<Paint> {
+pub(super) fn paint(
+    document: &Document,
+    source: &gltf::Material,
+    shelf: &mut images::Textures,
+    notes: &mut Notes,
+) -> Result<Paint> {
     let subject = subject(source);
     let pbr = source.pbr_metallic_roughness();
-    let [red, green, blue, _alpha] = pbr.base_color_factor().map(f64::from);
-    let reflectance = [red, green, blue];
-    if !reflectance.iter().all(|rho| (0.0..=1.0).contains(rho)) {
+    let base_colour = pbr.base_color_factor().map(f64::from);
+    let blends = source.alpha_mode() == AlphaMode::Blend;
+    let factors = &base_colour[..if blends { 4 } else { 3 }];
+    if !factors.iter().all(|rho| (0.0..=1.0).contains(rho)) {
         return Err(document.error(
-            format!("{subject} with the reflectance rho {reflectance:?}"),
+            format!("{subject} with the reflectance rho {factors:?}"),
             "0 to 1 in each channel",
             "correct its baseColorFactor",
         ));
@@ -56,11 +94,35 @@ pub(super) fn paint(document: &Document, source: &gltf::Material, notes: &mut No
     note_ignored(source, &subject, notes);
     Ok(Paint {
         name: source.name().unwrap_or_default().to_owned(),
-        reflectance,
+        base_colour,
+        blends,
         emissive_factor,
         emissive_strength,
         double_sided: source.double_sided(),
+        textures: textures(document, source, shelf),
     })
+}
+
+fn textures(document: &Document, source: &gltf::Material, shelf: &mut images::Textures) -> Textures {
+    let pbr = source.pbr_metallic_roughness();
+    let alpha = match source.alpha_mode() {
+        AlphaMode::Opaque => Alpha::Ignored,
+        AlphaMode::Blend => Alpha::Share,
+        AlphaMode::Mask => Alpha::From(least_alpha(source.alpha_cutoff(), pbr.base_color_factor()[3])),
+    };
+    let mut texture = |info: Option<gltf::texture::Info>, alpha| {
+        info.map(|info| shelf.get(document, &info.texture(), alpha))
+    };
+    Textures {
+        reflectance: texture(pbr.base_color_texture(), alpha),
+        emission: texture(source.emissive_texture(), Alpha::Ignored),
+    }
+}
+
+/// The least alpha of a texel, of 255, that is not below the cutoff once multiplied by `factor`.
+fn least_alpha(cutoff: Option<f32>, factor: f32) -> u16 {
+    let least = f64::from(cutoff.unwrap_or(0.5)) / f64::from(factor) * 255.0;
+    if least <= 255.0 { least.ceil() as u16 } else { 256 }
 }
 
 fn subject(source: &gltf::Material) -> String {
@@ -76,19 +138,23 @@ fn note_ignored(source: &gltf::Material, subject: &str, notes: &mut Notes) {
         return;
     }
     let pbr = source.pbr_metallic_roughness();
-    let textured = pbr.base_color_texture().is_some()
-        || pbr.metallic_roughness_texture().is_some()
+    let others = pbr.metallic_roughness_texture().is_some()
         || source.normal_texture().is_some()
-        || source.occlusion_texture().is_some()
-        || source.emissive_texture().is_some();
-    if textured {
-        notes.add(subject, "textures are ignored, the factors alone count");
+        || source.occlusion_texture().is_some();
+    if others {
+        notes.add(subject, "textures are ignored but for base colour and emission");
     }
     if pbr.metallic_factor() > 0.0 {
         notes.add(subject, "metallic, yet reflects its base colour diffusely");
     }
-    if source.alpha_mode() != gltf::material::AlphaMode::Opaque {
-        notes.add(subject, "transparent in the file, opaque here");
+    if source.alpha_mode() != AlphaMode::Opaque {
+        notes.add(
+            subject,
+            "transparent in the file; here it reflects by its alpha and lets nothing through, so that light is lost",
+        );
+    }
+    if source.extension_value(TRANSMISSION).is_some() {
+        notes.add(subject, "lets light through in the file, here it is opaque and reflects its base colour");
     }
 }
 
@@ -96,4 +162,5 @@ fn note_ignored(source: &gltf::Material, subject: &str, notes: &mut Notes) {
 pub(super) fn same_material(left: &Material, right: &Material) -> bool {
     (left.reflectance, left.emission, left.double_sided)
         == (right.reflectance, right.emission, right.double_sided)
+        && left.textures == right.textures
 }

@@ -1,33 +1,43 @@
 //! Meshes read once, however often they are placed: surfaces in mesh coordinates and the material of each primitive.
 
 use super::document::Document;
-use super::materials::{Paint, paint};
+use super::images::Textures;
+use super::materials::{Paint, Uses, paint};
 use super::notes::Notes;
 use super::surfaces::{Dropped, surfaces};
 use super::triangles::triangles;
-use equilux_formats::{Result, Surface};
+use equilux_formats::{Result, Surface, TexturedTriangle};
 use std::collections::HashMap;
 use std::rc::Rc;
 
 /// A mesh in its own coordinates.
 #[derive(Default)]
 pub(super) struct Mesh {
-    /// Surfaces and paint of each primitive; all name material 0, until a part numbers its paints.
-    pub(super) primitives: Vec<(Vec<Surface>, Paint)>,
+    /// What it is made of.
+    pub(super) primitives: Vec<Primitive>,
     /// What was left out of it.
     pub(super) dropped: Dropped,
+}
+
+/// A primitive: surfaces of one paint. All name material 0, until a part numbers its paints.
+pub(super) struct Primitive {
+    pub(super) surfaces: Vec<Surface>,
+    /// How colours vary over them.
+    pub(super) textured: Vec<TexturedTriangle>,
+    pub(super) paint: Paint,
 }
 
 /// The meshes of one document.
 pub(super) struct Meshes<'a> {
     document: &'a Document,
     read: HashMap<usize, Rc<Mesh>>,
+    textures: Textures,
 }
 
 impl<'a> Meshes<'a> {
     /// No mesh of `document` has been read yet.
     pub(super) fn of(document: &'a Document) -> Self {
-        Self { document, read: HashMap::new() }
+        Self { document, read: HashMap::new(), textures: Textures::default() }
     }
 
     /// The mesh `source` of the document.
@@ -35,23 +45,32 @@ impl<'a> Meshes<'a> {
         if let Some(mesh) = self.read.get(&source.index()) {
             return Ok(Rc::clone(mesh));
         }
-        let mesh = Rc::new(read_mesh(self.document, source, notes)?);
+        let mesh = Rc::new(read_mesh(self.document, source, &mut self.textures, notes)?);
         self.read.insert(source.index(), Rc::clone(&mesh));
         Ok(mesh)
     }
 }
 
-fn read_mesh(document: &Document, source: &gltf::Mesh, notes: &mut Notes) -> Result<Mesh> {
+fn read_mesh(
+    document: &Document,
+    source: &gltf::Mesh,
+    textures: &mut Textures,
+    notes: &mut Notes,
+) -> Result<Mesh> {
     let name = source.name().map_or_else(|| source.index().to_string(), str::to_owned);
     let subject = format!("mesh {name}");
     let mut mesh = Mesh::default();
     for primitive in source.primitives() {
-        let Some(triangles) = triangles(document, &primitive, &name)? else {
+        let uses = Uses::of(&primitive.material());
+        let Some(triangles) = triangles(document, &primitive, &uses, &name)? else {
             notes.add(&subject, "points and lines are ignored, they have no area");
             continue;
         };
         if primitive.material().index().is_none() {
             notes.add(&subject, "no material, so white with reflectance 1 as glTF has it");
+        }
+        if [uses.reflectance, uses.emission].iter().flatten().any(|of| !of.is_served_by(&primitive)) {
+            notes.add(&subject, "a texture without coordinates on the mesh is ignored");
         }
         if primitive.morph_targets().len() > 0 {
             notes.add(&subject, "morph targets are ignored");
@@ -65,7 +84,9 @@ fn read_mesh(document: &Document, source: &gltf::Mesh, notes: &mut Notes) -> Res
             notes.add(&subject, remark);
         }
         mesh.dropped += surfaces.dropped;
-        mesh.primitives.push((surfaces.kept, paint(document, &primitive.material(), notes)?));
+        let paint = paint(document, &primitive.material(), textures, notes)?;
+        let (surfaces, textured) = (surfaces.kept, surfaces.textured);
+        mesh.primitives.push(Primitive { surfaces, textured, paint });
     }
     Ok(mesh)
 }

@@ -12,10 +12,12 @@
 
 mod accessors;
 mod buffers;
+mod coordinates;
 mod document;
 mod drafts;
 mod extras;
 mod files;
+mod images;
 mod instancing;
 mod lights;
 mod materials;
@@ -49,7 +51,8 @@ use surfaces::Dropped;
 ///
 /// # Errors
 /// Files that are missing, truncated or not glTF 2.0; that contradict themselves; that require an extension unknown
-/// here; that refer to anything outside the scene's folder; that hold reflectances outside 0..1, or no surfaces.
+/// here; that refer to anything outside the scene's folder; whose images are broken; that hold reflectances outside 0..1,
+/// or no surfaces.
 pub fn import_scene(file: &Path) -> Result<Scene> {
     let mut part_files = PartFiles::around(file)?;
     let document = part_files.open(file)?;
@@ -240,7 +243,7 @@ impl<'a> Stage<'a> {
         for placed in nodes {
             let Some(mesh) = placed.node.mesh() else { continue };
             let mesh = self.meshes.get(&mesh, &mut self.part_files.notes)?;
-            self.part_files.asked.hear(&placed.look, mesh.primitives.iter().map(|(_, paint)| paint));
+            self.part_files.asked.hear(&placed.look, mesh.primitives.iter().map(|primitive| &primitive.paint));
             draft.add_mesh(self.document, &mesh, placed.placement, &placed.look)?;
         }
         Ok(draft)

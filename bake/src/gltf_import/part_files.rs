@@ -118,7 +118,7 @@ impl PartFiles {
         }
         if let Some(mesh) = placed.node.mesh() {
             let mesh = meshes.get(&mesh, &mut self.notes)?;
-            self.asked.hear(&placed.look, mesh.primitives.iter().map(|(_, paint)| paint));
+            self.asked.hear(&placed.look, mesh.primitives.iter().map(|primitive| &primitive.paint));
             for (_, placement) in placed.copies(document)? {
                 draft.add_mesh(document, &mesh, placement, &placed.look)?;
             }

@@ -6,7 +6,7 @@
 use super::drafts::{Draft, Paints, Settings};
 use super::materials::{Paint, same_material};
 use super::surfaces::{Dropped, Seen, f64_spacing, has_area};
-use equilux_formats::{Part, PartId, Surface};
+use equilux_formats::{Part, PartId, Surface, TexturedTriangle};
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -75,9 +75,15 @@ pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: Str
             surfaces.push(Surface { corners, material, ..surface });
         }
     }
+    let textured = draft.textured.iter().filter_map(|triangle| {
+        let (material, placed) = (renumbered[triangle.material.index()]?, triangle.placed(linear));
+        let corners = placed.corners.map(|corner| corner - start + 0.0);
+        Some(TexturedTriangle { material, corners, ..placed })
+    });
+    let textured = textured.collect();
     let Settings { element_size, local_solver } = settings;
     let materials = paints.0.iter().map(Paint::material).collect();
-    let part = Part { name, surfaces, materials, element_size, local_solver };
+    let part = Part { name, surfaces, materials, textured, element_size, local_solver };
     Settled { part, paints: paints.0, start, dropped }
 }
 
@@ -139,6 +145,7 @@ fn content_hash(part: &Part) -> u64 {
 fn same_content(left: &Part, right: &Part) -> bool {
     (left.element_size, left.local_solver) == (right.element_size, right.local_solver)
         && left.surfaces == right.surfaces
+        && left.textured == right.textured
         && left.materials.len() == right.materials.len()
         && left.materials.iter().zip(&right.materials).all(|(left, right)| same_material(left, right))
 }

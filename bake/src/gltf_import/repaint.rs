@@ -34,9 +34,7 @@ impl Change {
     }
 
     fn on(&self, mut paint: Paint) -> Paint {
-        if let Some([red, green, blue, _alpha]) = self.base_color_factor {
-            paint.reflectance = [red, green, blue];
-        }
+        paint.base_colour = self.base_color_factor.unwrap_or(paint.base_colour);
         paint.emissive_factor = self.emissive_factor.unwrap_or(paint.emissive_factor);
         paint.emissive_strength = self.emissive_strength.unwrap_or(paint.emissive_strength);
         paint

@@ -3,7 +3,7 @@
 //! in the same order.
 
 use super::triangles::Triangles;
-use equilux_formats::{Corners, MaterialId, Surface};
+use equilux_formats::{Corners, MaterialId, Surface, TexturedTriangle};
 use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::AddAssign;
@@ -40,6 +40,8 @@ impl AddAssign for Dropped {
 pub(super) struct Surfaces {
     /// All of material 0.
     pub(super) kept: Vec<Surface>,
+    /// The triangles that they were made of, if colours vary over them.
+    pub(super) textured: Vec<TexturedTriangle>,
     pub(super) dropped: Dropped,
     /// The step of f32 and the shortest edge, metres, where the step is too coarse for the edge.
     pub(super) lost_digits: Option<(f64, f64)>,
@@ -53,7 +55,11 @@ pub(super) fn surfaces(triangles: &Triangles) -> Surfaces {
     let shortest =
         kept.iter().flat_map(|kept| edges(&kept.corners)).map(DVec3::length).fold(f64::MAX, f64::min);
     let lost_digits = (!kept.is_empty() && step > LOST_DIGITS * shortest).then_some((step, shortest));
-    Surfaces { kept: pair(&kept, step), dropped, lost_digits }
+    let textured = match &triangles.textured {
+        Some(textured) => kept.iter().map(|kept| textured[kept.source].clone()).collect(),
+        None => Vec::new(),
+    };
+    Surfaces { kept: pair(&kept, step), textured, dropped, lost_digits }
 }
 
 /// The distance from `magnitude` to the next f32.
@@ -284,7 +290,7 @@ mod tests {
 
     fn of(corners: Vec<[[f64; 3]; 3]>) -> Surfaces {
         let corners = corners.into_iter().map(|triangle| triangle.map(DVec3::from_array)).collect();
-        surfaces(&Triangles { corners, lightmap: None, rounded: true })
+        surfaces(&Triangles { corners, lightmap: None, textured: None, rounded: true })
     }
 
     const A: [f64; 3] = [0.0, 0.0, 0.0];
@@ -360,7 +366,7 @@ mod tests {
             ("all elsewhere", second.map(|place| place + 0.3), 2),
         ] {
             let corners = [[A, B, C], [A, C, D]].map(|triangle| triangle.map(DVec3::from_array)).to_vec();
-            let triangles = Triangles { corners, lightmap: Some(vec![first, second]), rounded: true };
+            let triangles = Triangles { corners, lightmap: Some(vec![first, second]), textured: None, rounded: true };
             let kept = surfaces(&triangles).kept;
             assert_eq!(kept.len(), count, "{case}");
             let found = kept[0].lightmap.expect("a place in the lightmap");

@@ -2,8 +2,10 @@
 //! Triangle lists, strips and fans, indexed or not; points and lines have no area and give nothing.
 
 use super::accessors::{check_type, components};
+use super::coordinates::{Use, texture_coordinates, vertex_colours};
 use super::document::Document;
-use equilux_formats::Result;
+use super::materials::Uses;
+use equilux_formats::{MaterialId, Result, Rgb, TexturedTriangle};
 use glam::{DVec2, DVec3};
 use gltf::Primitive;
 use gltf::accessor::{DataType, Dimensions};
@@ -15,12 +17,20 @@ pub(super) struct Triangles {
     pub(super) corners: Vec<[DVec3; 3]>,
     /// Where the corners lie in a lightmap, if the author has one.
     pub(super) lightmap: Option<Vec<[DVec2; 3]>>,
+    /// The same triangles with what colours them, if anything does. All of material 0.
+    pub(super) textured: Option<Vec<TexturedTriangle>>,
     /// Whether positions were rounded to f32 on their way in.
     pub(super) rounded: bool,
 }
 
-/// The triangles of `primitive`, or nothing where it has none by its kind. `mesh` names it in errors.
-pub(super) fn triangles(document: &Document, primitive: &Primitive, mesh: &str) -> Result<Option<Triangles>> {
+/// The triangles of `primitive`, whose material has textures as `uses` says, or nothing where it has none by its kind.
+/// `mesh` names it in errors.
+pub(super) fn triangles(
+    document: &Document,
+    primitive: &Primitive,
+    uses: &Uses,
+    mesh: &str,
+) -> Result<Option<Triangles>> {
     let Some(corners_of) = assembly(primitive.mode()) else { return Ok(None) };
     let Some(accessor) = primitive.get(&gltf::Semantic::Positions) else { return Ok(None) };
     let positions = positions(document, &accessor, mesh)?;
@@ -35,14 +45,20 @@ pub(super) fn triangles(document: &Document, primitive: &Primitive, mesh: &str) 
             "export the file again, it is damaged",
         ));
     }
-    let lightmap = lightmap(document, primitive, positions.len(), mesh)?;
+    let lightmap = texture_coordinates(document, primitive, 1, positions.len(), mesh)?;
+    let lightmap = lightmap.filter(|places| places.iter().all(|place| place.is_finite()));
+    let colouring = Colouring::of(document, primitive, uses, positions.len(), mesh)?;
     let vertices_of = || corners_of(order.len()).map(|corners| corners.map(|corner| order[corner]));
     let lightmap =
         lightmap.map(|places| vertices_of().map(|vertices| vertices.map(|vertex| places[vertex])).collect());
-    let corners = vertices_of()
+    let corners: Vec<[DVec3; 3]> = vertices_of()
         .map(|vertices| finite(document, &accessor, mesh, &positions, vertices))
         .collect::<Result<_>>()?;
-    Ok(Some(Triangles { corners, lightmap, rounded: accessor.data_type() == DataType::F32 }))
+    let textured = colouring.map(|colouring| {
+        let triangles = corners.iter().zip(vertices_of());
+        triangles.map(|(&corners, vertices)| colouring.triangle(corners, vertices)).collect()
+    });
+    Ok(Some(Triangles { corners, lightmap, textured, rounded: accessor.data_type() == DataType::F32 }))
 }
 
 type Assembly = fn(usize) -> Box<dyn Iterator<Item = [usize; 3]>>;
@@ -66,26 +82,46 @@ fn positions(document: &Document, accessor: &gltf::Accessor, mesh: &str) -> Resu
     Ok(components(document, accessor, &what)?.chunks_exact(3).map(DVec3::from_slice).collect())
 }
 
-/// TEXCOORD_1, if all of it are numbers.
-fn lightmap(
-    document: &Document,
-    primitive: &Primitive,
-    vertices: usize,
-    mesh: &str,
-) -> Result<Option<Vec<DVec2>>> {
-    let Some(accessor) = primitive.get(&gltf::Semantic::TexCoords(1)) else { return Ok(None) };
-    let what = format!("TEXCOORD_1 of mesh {mesh}");
-    check_type(document, &accessor, &what, Dimensions::Vec2, &[DataType::F32, DataType::U8, DataType::U16])?;
-    if accessor.count() != vertices {
-        return Err(document.error(
-            format!("{what} in accessor {} with {} elements", accessor.index(), accessor.count()),
-            format!("{vertices}, one for each position"),
-            "export the file again, it contradicts itself",
-        ));
+/// The colours of `vertices` vertices of `primitive`, and where they lie in its material's textures; none if all are alike.
+struct Colouring {
+    colours: Option<Vec<Rgb>>,
+    reflectance_at: Option<Vec<DVec2>>,
+    emission_at: Option<Vec<DVec2>>,
+}
+
+impl Colouring {
+    fn of(
+        document: &Document,
+        primitive: &Primitive,
+        uses: &Uses,
+        vertices: usize,
+        mesh: &str,
+    ) -> Result<Option<Self>> {
+        let places = |of: Option<Use>| match of {
+            Some(of) => of.places(document, primitive, vertices, mesh),
+            None => Ok(None),
+        };
+        let (reflectance_at, emission_at) = (places(uses.reflectance)?, places(uses.emission)?);
+        let colours = vertex_colours(document, primitive, vertices, mesh)?;
+        let any = colours.is_some() || reflectance_at.is_some() || emission_at.is_some();
+        Ok(any.then_some(Self { colours, reflectance_at, emission_at }))
     }
-    let places: Vec<DVec2> =
-        components(document, &accessor, &what)?.chunks_exact(2).map(DVec2::from_slice).collect();
-    Ok(places.iter().all(|place| place.is_finite()).then_some(places))
+
+    fn triangle(&self, corners: [DVec3; 3], vertices: [usize; 3]) -> TexturedTriangle {
+        let at = |places: &Option<Vec<DVec2>>| {
+            places.as_ref().map(|places| vertices.map(|vertex| places[vertex]))
+        };
+        TexturedTriangle {
+            material: MaterialId(0),
+            corners,
+            colours: self
+                .colours
+                .as_ref()
+                .map_or([[1.0; 3]; 3], |colours| vertices.map(|vertex| colours[vertex])),
+            reflectance_at: at(&self.reflectance_at),
+            emission_at: at(&self.emission_at),
+        }
+    }
 }
 
 fn indexed(

@@ -1,7 +1,7 @@
 //! The parts that enclose: a room with a door and a window, half a hall with two doors, and what fills a window.
 
 use crate::furniture::block;
-use equilux_formats::{Material, Part};
+use equilux_formats::{Material, Part, Textures};
 use equilux_tests::shapes::{joined, part, rectangle};
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use std::f64::consts::PI;
@@ -136,7 +136,7 @@ fn slabs(floor: Material, low: DVec3, high: DVec3) -> Part {
 
 /// A material of that reflectance.
 pub fn paint(red: f64, green: f64, blue: f64) -> Material {
-    Material { name: String::new(), reflectance: [red, green, blue], emission: [0.0; 3], double_sided: false }
+    Material { name: String::new(), reflectance: [red, green, blue], emission: [0.0; 3], double_sided: false, textures: Textures::default() }
 }
 
 /// The part under its name, with elements of its own size or of the scene's.

@@ -1,0 +1,207 @@
+//! What textures and vertex colours make of elements: in go elements and the textured triangles of their surfaces, out come
+//! average colours over each element, in linear light.
+//!
+//! Elements find the triangles they lie in by place and material. So elements, and with them form factors, are the same
+//! whatever is painted on them.
+
+mod mean;
+
+use crate::form_factor::polygon::{Polygon, Side, clip};
+use crate::visibility::{BoxTree, Inside};
+use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
+use glam::{DVec2, DVec3};
+use mean::Sums;
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// How far a quad made of two triangles may lie off one of them, in its longest edges: twice what the importer takes for flat.
+const BENT: f64 = 2e-4;
+/// How far elements that were cut out of joined surfaces may lie off these, relative to the largest coordinate.
+const JOINED: f64 = 1e-6;
+/// Cosine of the angle up to which an element and a triangle look to the same side.
+const SAME_SIDE: f64 = 0.5;
+
+/// What textures make of every element.
+pub fn tints(geometry: &Geometry, materials: &[Material], textured: &[TexturedTriangle]) -> Tints {
+    if textured.is_empty() {
+        return Tints::plain(geometry.elements.len());
+    }
+    let coat = Coat::new(materials, textured);
+    let of = |e: &Element| coat.tint(e.corners.as_slice(), e.normal, e.material);
+    let (reflectance, emission) = geometry.elements.par_iter().map(of).unzip();
+    Tints { reflectance, emission }
+}
+
+/// Textured triangles, to be asked for colours.
+pub struct Coat<'a> {
+    materials: &'a [Material],
+    triangles: Vec<Sheet<'a>>,
+    tree: BoxTree,
+    /// By the address of the texture.
+    sums: HashMap<usize, Sums<'a>>,
+    /// How far from a polygon its triangle may be, metres, but for what a bent quad adds.
+    slack: f64,
+}
+
+struct Sheet<'a> {
+    triangle: &'a TexturedTriangle,
+    /// (b − a) × (c − a).
+    across: DVec3,
+    normal: DVec3,
+    longest: f64,
+}
+
+/// What of a polygon lies on a triangle.
+struct Share<'a> {
+    sheet: &'a Sheet<'a>,
+    piece: Polygon,
+    distance: f64,
+}
+
+impl<'a> Coat<'a> {
+    /// The coat of surfaces of these materials.
+    pub fn new(materials: &'a [Material], textured: &'a [TexturedTriangle]) -> Self {
+        let triangles: Vec<Sheet> =
+            textured.iter().map(Sheet::new).filter(|sheet| sheet.normal.is_finite()).collect();
+        let corners = || triangles.iter().flat_map(|sheet| sheet.triangle.corners);
+        let slack = JOINED * corners().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let boxes: Vec<(DVec3, DVec3)> = triangles.iter().map(|sheet| sheet.bounds(slack)).collect();
+        let textures = materials.iter().flat_map(|m| [&m.textures.reflectance, &m.textures.emission]);
+        let mut sums = HashMap::new();
+        for texture in textures.flatten() {
+            sums.entry(Arc::as_ptr(texture).addr()).or_insert_with(|| Sums::new(texture));
+        }
+        Self { materials, tree: BoxTree::new(&boxes), triangles, sums, slack }
+    }
+
+    /// What a planar convex polygon's reflectance and emission are multiplied by: averages over it.
+    pub fn tint(&self, corners: &[DVec3], normal: DVec3, material: MaterialId) -> (Rgb, Rgb) {
+        let mut shares = self.shares(corners, normal, material);
+        let nearest = shares.iter().map(|share| share.distance).fold(f64::INFINITY, f64::min);
+        shares.retain(|share| share.distance <= nearest + self.slack);
+        let textures = &self.materials[material.index()].textures;
+        let (mut covered, mut reflectance, mut emission) = (0.0, [0.0; 3], [0.0; 3]);
+        for Share { sheet, piece, .. } in &shares {
+            let (area, middle) = area_and_middle(piece);
+            let tint = |texture: &Option<Arc<Texture>>, places: Option<[DVec2; 3]>| {
+                let (Some(texture), Some(places)) = (texture, places) else { return [1.0; 3] };
+                let places: Vec<DVec2> = piece.iter().map(|&p| sheet.at(p, places)).collect();
+                self.sums[&Arc::as_ptr(texture).addr()].mean(&places)
+            };
+            let colour = sheet.colour(middle);
+            let painted = tint(&textures.reflectance, sheet.triangle.reflectance_at);
+            let shining = tint(&textures.emission, sheet.triangle.emission_at);
+            covered += area;
+            for c in 0..3 {
+                reflectance[c] += area * (painted[c] * colour[c]);
+                emission[c] += area * shining[c];
+            }
+        }
+        // What no triangle covers is plain.
+        let plain = (area_and_middle(corners).0 - covered).max(0.0);
+        let average = |sums: Rgb| sums.map(|sum| ((sum + plain) / (covered + plain)).clamp(0.0, 1.0));
+        if shares.is_empty() { ([1.0; 3], [1.0; 3]) } else { (average(reflectance), average(emission)) }
+    }
+
+    fn shares(&self, corners: &[DVec3], normal: DVec3, material: MaterialId) -> Vec<Share<'_>> {
+        let either_side = self.materials[material.index()].double_sided;
+        let (middle, mut shares) = (area_and_middle(corners).1, Vec::new());
+        for sheet in self.near(corners) {
+            let facing = sheet.normal.dot(normal);
+            let fits = facing > SAME_SIDE || (either_side && facing < -SAME_SIDE);
+            let distance = sheet.normal.dot(middle - sheet.triangle.corners[0]).abs();
+            if sheet.triangle.material == material
+                && fits
+                && distance <= sheet.slack(self.slack)
+                && let Some(piece) = sheet.over(corners)
+            {
+                shares.push(Share { sheet, piece, distance });
+            }
+        }
+        shares
+    }
+
+    fn near(&self, corners: &[DVec3]) -> Vec<&Sheet<'_>> {
+        let (low, high) = bounds(corners);
+        let (mut near, mut open) = (Vec::new(), Vec::from_iter(self.tree.root()));
+        while let Some(index) = open.pop() {
+            let node = self.tree.node(index);
+            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
+                continue;
+            }
+            match self.tree.inside(index) {
+                Inside::Boxes(inner) => open.extend(inner),
+                Inside::Things(things) => near.extend(things.iter().map(|&i| &self.triangles[i as usize])),
+            }
+        }
+        near
+    }
+}
+
+impl<'a> Sheet<'a> {
+    fn new(triangle: &'a TexturedTriangle) -> Self {
+        let [a, b, c] = triangle.corners;
+        let across = (b - a).cross(c - a);
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        Self { triangle, across, normal: across.normalize(), longest }
+    }
+
+    fn slack(&self, joined: f64) -> f64 {
+        joined + BENT * self.longest
+    }
+
+    fn bounds(&self, joined: f64) -> (DVec3, DVec3) {
+        let (low, high) = bounds(&self.triangle.corners);
+        (low - self.slack(joined), high + self.slack(joined))
+    }
+
+    /// What of a polygon lies over the triangle.
+    fn over(&self, corners: &[DVec3]) -> Option<Polygon> {
+        let mut rest = Polygon::from_slice(corners);
+        for side in 0..3 {
+            let (from, to) = (self.triangle.corners[side], self.triangle.corners[(side + 1) % 3]);
+            let inwards = self.normal.cross(to - from);
+            match clip(&rest, |p| inwards.dot(p - from)) {
+                Side::All => {}
+                Side::None => return None,
+                Side::Piece(piece) => rest = piece,
+            }
+        }
+        Some(rest)
+    }
+
+    /// Barycentric coordinates of a point.
+    fn weights(&self, p: DVec3) -> [f64; 3] {
+        let [a, b, c] = self.triangle.corners;
+        let share = |u: DVec3, v: DVec3| u.cross(v).dot(self.across) / self.across.length_squared();
+        let (second, third) = (share(p - a, c - a), share(b - a, p - a));
+        [1.0 - second - third, second, third]
+    }
+
+    fn at(&self, p: DVec3, places: [DVec2; 3]) -> DVec2 {
+        let weights = self.weights(p);
+        places[0] * weights[0] + places[1] * weights[1] + places[2] * weights[2]
+    }
+
+    fn colour(&self, p: DVec3) -> Rgb {
+        let (weights, colours) = (self.weights(p), &self.triangle.colours);
+        std::array::from_fn(|c| (0..3).map(|corner| weights[corner] * colours[corner][c]).sum())
+    }
+}
+
+fn bounds(corners: &[DVec3]) -> (DVec3, DVec3) {
+    corners.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+}
+
+/// Area and centre of area of a planar convex polygon.
+fn area_and_middle(corners: &[DVec3]) -> (f64, DVec3) {
+    let from = corners[0];
+    let (mut area, mut moment) = (0.0, DVec3::ZERO);
+    for edge in corners.windows(2).skip(1) {
+        let triangle = (edge[0] - from).cross(edge[1] - from).length() / 2.0;
+        area += triangle;
+        moment += triangle * ((edge[0] - from) + (edge[1] - from)) / 3.0;
+    }
+    (area, if area > 0.0 { from + moment / area } else { from })
+}

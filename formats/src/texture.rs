@@ -1,0 +1,68 @@
+//! How colours vary over a material: images, and the triangles of the source mesh with their places in them.
+
+use crate::ids::MaterialId;
+use crate::rows::Rgb;
+use glam::{DAffine3, DVec2, DVec3};
+use std::sync::Arc;
+
+/// What textures multiply a material's reflectance and emission by.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Textures {
+    /// On the reflectance; its alpha is the share of the surface that is there.
+    pub reflectance: Option<Arc<Texture>>,
+    /// On the emission.
+    pub emission: Option<Arc<Texture>>,
+}
+
+/// An image, each texel a square of one colour.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Texture {
+    /// Columns and rows, at least one of each.
+    pub size: [u32; 2],
+    /// Red, green and blue as sRGB has them, and alpha, linear; row after row from the top.
+    pub texels: Vec<[u8; 4]>,
+    /// What lies beyond the first and last column, and the first and last row.
+    pub wrap: [Wrap; 2],
+}
+
+/// What lies beyond the edges of an image.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// The image again.
+    Repeat,
+    /// The image turned round, and again.
+    Mirror,
+    /// The texels at the edge.
+    Clamp,
+}
+
+/// A triangle of the source mesh over which colours vary. Elements find the ones they lie in by place, so that form
+/// factors do not depend on where an author puts a texture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TexturedTriangle {
+    /// Its material.
+    pub material: MaterialId,
+    /// Corners, counter-clockwise seen from the front, metres.
+    pub corners: [DVec3; 3],
+    /// What the author's vertex colours multiply the reflectance by, linear RGB.
+    pub colours: [Rgb; 3],
+    /// Where the corners lie in the texture on the reflectance; (0, 0) is the upper left corner, (1, 1) the lower right.
+    pub reflectance_at: Option<[DVec2; 3]>,
+    /// Where they lie in the texture on the emission.
+    pub emission_at: Option<[DVec2; 3]>,
+}
+
+impl TexturedTriangle {
+    /// The triangle after `placement`. A mirror turns the order round, so that corners stay counter-clockwise from the front.
+    pub fn placed(&self, placement: DAffine3) -> Self {
+        let mut placed =
+            Self { corners: self.corners.map(|corner| placement.transform_point3(corner)), ..self.clone() };
+        if placement.matrix3.determinant() < 0.0 {
+            placed.corners.swap(1, 2);
+            placed.colours.swap(1, 2);
+            placed.reflectance_at.iter_mut().for_each(|places| places.swap(1, 2));
+            placed.emission_at.iter_mut().for_each(|places| places.swap(1, 2));
+        }
+        placed
+    }
+}
