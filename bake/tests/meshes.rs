@@ -11,7 +11,9 @@ use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon};
 use equilux_bake::outline::Plane;
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Surface, Textures};
+use equilux_formats::{
+    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Surface, Textures,
+};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
@@ -115,8 +117,21 @@ fn subtract(pieces: Vec<Polygon>, mut from: impl FnMut(Polygon, &mut Vec<Polygon
 
 fn part(surfaces: impl IntoIterator<Item = Corners>, double_sided: bool) -> Part {
     let surfaces = surfaces.into_iter().map(|corners| Surface::new(corners, MaterialId(0))).collect();
-    let grey = Material { name: String::new(), reflectance: [0.5; 3], emission: [0.0; 3], double_sided, textures: Textures::default() };
-    Part { name: String::new(), surfaces, materials: vec![grey], textured: vec![], element_size: None, local_solver: None }
+    let grey = Material {
+        name: String::new(),
+        reflectance: [0.5; 3],
+        emission: [0.0; 3],
+        double_sided,
+        textures: Textures::default(),
+    };
+    Part {
+        name: String::new(),
+        surfaces,
+        materials: vec![grey],
+        textured: vec![],
+        element_size: None,
+        local_solver: None,
+    }
 }
 
 /// A cube of two metres around the origin, seen from inside.

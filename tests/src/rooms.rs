@@ -7,7 +7,13 @@ use glam::{DVec3, dvec3};
 
 /// A material of this reflectance, channel by channel, without emission.
 pub fn paint(reflectance: [f64; 3]) -> Material {
-    Material { name: "paint".into(), reflectance, emission: [0.0; 3], double_sided: false, textures: Textures::default() }
+    Material {
+        name: "paint".into(),
+        reflectance,
+        emission: [0.0; 3],
+        double_sided: false,
+        textures: Textures::default(),
+    }
 }
 
 /// A dark lamp of this emission, W/m².

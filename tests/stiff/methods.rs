@@ -45,7 +45,8 @@ fn colour() -> impl Strategy<Value = [f64; 3]> {
 
 fn assembled(scene: &Part, cells: usize, solver: LocalSolver) -> Assembled {
     let cells = bisect(subdivide(scene, ElementSize::Metres(1.0)), cells);
-    let optics = cells.iter().map(|cell| optics(cell, &scene.materials, &Tints::plain(cell.elements.len()))).collect();
+    let optics =
+        cells.iter().map(|cell| optics(cell, &scene.materials, &Tints::plain(cell.elements.len()))).collect();
     Assembled::new(cells, optics, EXACT, Some(solver))
 }
 

@@ -1,6 +1,10 @@
 //! Images as files: edits that compute no form factors, repaints, and what is refused.
 
 use super::*;
+use equilux_assemble::lightmap::Lightmap;
+use equilux_assemble::lightmap::atlas::Atlas;
+use equilux_assemble::lightmap::texels::{Texels, bilinear};
+use equilux_bake::monitor::Monitor;
 use equilux_formats::Material;
 use equilux_tests::shapes::room;
 use equilux_tests::workshop::assembled;
@@ -85,5 +89,29 @@ fn images_that_cannot_be_read_are_named() {
         for words in expected {
             assert!(error.contains(words), "{uri}: expected '{words}' in: {error}");
         }
+    }
+}
+
+#[test]
+fn lightmaps_show_what_is_painted() {
+    let workshop = Workshop::new();
+    let texel = |x: u32, y: u32| [30 * x as u8 + 20 * y as u8, 0, 255, 255];
+    std::fs::write(workshop.path("rows.png"), png(6, 4, texel)).expect("an image");
+    let mut model = wallpaper("rows.png", json!({}));
+    model.json["nodes"][0]["scale"] = json!([-1.0, 1.0, 1.0]);
+    model.write(&workshop.path("scene.glb"));
+    let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
+    let atlas = Atlas::new(&scene, Some(0.05)).expect("a small atlas");
+    let lit = |texels: &Texels| vec![[2.0; 3]; texels.texels.len()];
+    let lightmap = Lightmap::new(&scene, &atlas, lit, &Monitor::default());
+    assert_eq!(lightmap.tiles.len(), 1);
+    let (_, grid) = atlas.chart_of(&lightmap.tiles[0]);
+    for (x, y) in (0..6).flat_map(|x| (0..4).map(move |y| (x, y))) {
+        let middle = DVec3::new(0.5 * f64::from(x) + 0.25, 1.75 - 0.5 * f64::from(y), 0.0);
+        let looked_up = bilinear(grid.texel_of(0, middle), lightmap.tiles[0].size[0]);
+        let found: f64 = looked_up.iter().map(|&(i, w)| w * lightmap.radiosity(0, i)[0]).sum();
+        let expected = 2.0 * linear(texel(x, y)[0]);
+        // Positions are f32.
+        assert!((found - expected).abs() < 1e-5, "{found} at {middle}, expected {expected}");
     }
 }

@@ -15,8 +15,7 @@ fn a_checkered_wall_reflects_its_average() {
     let workshop = Workshop::new();
     std::fs::write(workshop.path("checkers.png"), png(8, 6, checkers)).expect("an image");
     let (offset, rotation, scale) = (dvec2(0.13, -0.4), 0.3, dvec2(3.7, 2.9));
-    let transform =
-        json!({ "offset": offset.to_array(), "rotation": rotation, "scale": scale.to_array() });
+    let transform = json!({ "offset": offset.to_array(), "rotation": rotation, "scale": scale.to_array() });
     wallpaper("checkers.png", transform).write(&workshop.path("scene.glb"));
 
     // Midpoints of 1500 × 1000 squares: those on outlines of texels, one in ten, err both ways.
@@ -104,10 +103,9 @@ fn texture_coordinates_of_another_set_are_used_where_asked_for() {
     std::fs::write(workshop.path("half.png"), png(2, 1, half)).expect("an image");
     let second = |model| with_attribute(model, "TEXCOORD_1", "VEC2", |p| vec![p.x / 12.0, 0.0]);
     let model = second(wallpaper("half.png", json!({})));
-    let by_info = model.clone().with(
-        "/materials/0/pbrMetallicRoughness/baseColorTexture",
-        json!({ "index": 0, "texCoord": 1 }),
-    );
+    let by_info = model
+        .clone()
+        .with("/materials/0/pbrMetallicRoughness/baseColorTexture", json!({ "index": 0, "texCoord": 1 }));
     let by_transform = second(wallpaper("half.png", json!({ "texCoord": 1 })));
     for (model, expected) in [(model, 0.5), (by_info, 1.0), (by_transform, 1.0)] {
         model.write(&workshop.path("scene.glb"));
@@ -169,7 +167,10 @@ fn sides_halves_and_mirrored_copies_keep_their_texels() {
     let mut model =
         with_image(model, "/pbrMetallicRoughness/baseColorTexture", "half.png", json!({}), json!({}));
     model.json["nodes"][0]["scale"] = json!([-1.0, 1.0, 1.0]);
-    model.json["nodes"].as_array_mut().expect("nodes").push(json!({ "mesh": 0, "translation": [5.0, 0.0, 0.0] }));
+    model.json["nodes"]
+        .as_array_mut()
+        .expect("nodes")
+        .push(json!({ "mesh": 0, "translation": [5.0, 0.0, 0.0] }));
     model.json["scenes"][0]["nodes"] = json!([0, 1]);
     model.write(&workshop.path("scene.glb"));
     for division in [Division::Authored, Division::Cuts(vec![Cut { axis: 0, offset: 0.0 }])] {

@@ -26,6 +26,7 @@ pub mod patch;
 mod seams;
 pub mod side;
 pub mod texels;
+mod tints;
 mod write;
 
 pub use images::Units;
@@ -37,6 +38,7 @@ use equilux_formats::{Material, MaterialId, Rgb, Scene};
 use rayon::prelude::*;
 use std::ops::Range;
 use texels::Texels;
+use tints::Of;
 
 /// What a person chooses about lightmaps.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +67,8 @@ pub struct Lightmap<'a> {
     holds: Vec<Vec<Holds>>,
     /// What each instance's materials do with light.
     materials: Vec<Vec<Material>>,
+    /// What textures multiply reflectance and emission of each texel by, if there are any.
+    tints: Option<[Vec<Vec<Rgb>>; 2]>,
 }
 
 /// What of its chart a texel holds.
@@ -92,9 +96,16 @@ impl<'a> Lightmap<'a> {
         let tiles = atlas.tiles();
         let values = values(scene, atlas, &tiles, irradiance, monitor);
         let (mut irradiance, holds) = with_margins(values, &tiles);
+        let tints = tints::coats(scene).map(|coats| {
+            [Of::Reflectance, Of::Emission].map(|of| {
+                let tint = |texels: &Texels| tints::tints(scene, &coats, texels, of);
+                with_margins(self::values(scene, atlas, &tiles, tint, monitor), &tiles).0
+            })
+        });
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
-        Self { scene, atlas, materials: materials.collect(), tiles, irradiance, directions: None, holds }
+        let materials = materials.collect();
+        Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds }
     }
 
     /// The same with the mean direction that each texel's light comes from, which `directions` gives: scene coordinates, weighted
@@ -124,7 +135,9 @@ impl<'a> Lightmap<'a> {
     pub fn radiosity(&self, tile: usize, texel: usize) -> Rgb {
         let Material { reflectance, emission, .. } = self.material_of(&self.tiles[tile]).1;
         let h = self.irradiance[tile][texel];
-        std::array::from_fn(|c| emission[c] + reflectance[c] * h[c])
+        let tint = |of: usize| self.tints.as_ref().map_or([1.0; 3], |tints| tints[of][tile][texel]);
+        let [painted, shining] = [0, 1].map(tint);
+        std::array::from_fn(|c| emission[c] * shining[c] + reflectance[c] * painted[c] * h[c])
     }
 }
 

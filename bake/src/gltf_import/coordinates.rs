@@ -91,17 +91,18 @@ pub(super) fn vertex_colours(
     check_type(document, &accessor, &what, dimensions, &[DataType::F32, DataType::U8, DataType::U16])?;
     check_count(document, &accessor, &what, vertices)?;
     let values = components(document, &accessor, &what)?;
-    // `max` and `min` also make numbers of what is none.
-    let colour = |values: &[f64]| std::array::from_fn(|c| values[c].max(0.0).min(1.0));
+    if values.iter().any(|value| value.is_nan()) {
+        return Err(document.error(
+            format!("{what} in accessor {} with values that are no numbers", accessor.index()),
+            "numbers, 0 to 1",
+            "paint the mesh again, or remove its vertex colours",
+        ));
+    }
+    let colour = |values: &[f64]| std::array::from_fn(|c| values[c].clamp(0.0, 1.0));
     Ok(Some(values.chunks_exact(dimensions.multiplicity()).map(colour).collect()))
 }
 
-fn check_count(
-    document: &Document,
-    accessor: &gltf::Accessor,
-    what: &str,
-    vertices: usize,
-) -> Result<()> {
+fn check_count(document: &Document, accessor: &gltf::Accessor, what: &str, vertices: usize) -> Result<()> {
     match accessor.count() == vertices {
         true => Ok(()),
         false => Err(document.error(

@@ -102,10 +102,8 @@ impl Draft {
         material: impl Fn(MaterialId) -> MaterialId,
         placement: DAffine3,
     ) {
-        let placed = |t: &TexturedTriangle| TexturedTriangle {
-            material: material(t.material),
-            ..t.placed(placement)
-        };
+        let placed =
+            |t: &TexturedTriangle| TexturedTriangle { material: material(t.material), ..t.placed(placement) };
         self.textured.extend(triangles.iter().map(placed));
     }
 

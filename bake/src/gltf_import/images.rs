@@ -29,12 +29,7 @@ pub(super) fn read_images(
     used.map(|image| Ok((image.index(), read_image(files, path, &image, buffers)?))).collect()
 }
 
-fn read_image(
-    files: &mut Files,
-    path: &Path,
-    image: &gltf::Image,
-    buffers: &[Vec<u8>],
-) -> Result<RgbaImage> {
+fn read_image(files: &mut Files, path: &Path, image: &gltf::Image, buffers: &[Vec<u8>]) -> Result<RgbaImage> {
     let named = image.name().or(match image.source() {
         Source::Uri { uri, .. } if !uri.starts_with("data:") => Some(uri),
         _ => None,

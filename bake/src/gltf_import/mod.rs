@@ -243,7 +243,9 @@ impl<'a> Stage<'a> {
         for placed in nodes {
             let Some(mesh) = placed.node.mesh() else { continue };
             let mesh = self.meshes.get(&mesh, &mut self.part_files.notes)?;
-            self.part_files.asked.hear(&placed.look, mesh.primitives.iter().map(|primitive| &primitive.paint));
+            self.part_files
+                .asked
+                .hear(&placed.look, mesh.primitives.iter().map(|primitive| &primitive.paint));
             draft.add_mesh(self.document, &mesh, placed.placement, &placed.look)?;
         }
         Ok(draft)

@@ -366,7 +366,8 @@ mod tests {
             ("all elsewhere", second.map(|place| place + 0.3), 2),
         ] {
             let corners = [[A, B, C], [A, C, D]].map(|triangle| triangle.map(DVec3::from_array)).to_vec();
-            let triangles = Triangles { corners, lightmap: Some(vec![first, second]), textured: None, rounded: true };
+            let triangles =
+                Triangles { corners, lightmap: Some(vec![first, second]), textured: None, rounded: true };
             let kept = surfaces(&triangles).kept;
             assert_eq!(kept.len(), count, "{case}");
             let found = kept[0].lightmap.expect("a place in the lightmap");

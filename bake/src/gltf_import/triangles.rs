@@ -108,9 +108,8 @@ impl Colouring {
     }
 
     fn triangle(&self, corners: [DVec3; 3], vertices: [usize; 3]) -> TexturedTriangle {
-        let at = |places: &Option<Vec<DVec2>>| {
-            places.as_ref().map(|places| vertices.map(|vertex| places[vertex]))
-        };
+        let at =
+            |places: &Option<Vec<DVec2>>| places.as_ref().map(|places| vertices.map(|vertex| places[vertex]));
         TexturedTriangle {
             material: MaterialId(0),
             corners,

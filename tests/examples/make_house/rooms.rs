@@ -136,7 +136,13 @@ fn slabs(floor: Material, low: DVec3, high: DVec3) -> Part {
 
 /// A material of that reflectance.
 pub fn paint(red: f64, green: f64, blue: f64) -> Material {
-    Material { name: String::new(), reflectance: [red, green, blue], emission: [0.0; 3], double_sided: false, textures: Textures::default() }
+    Material {
+        name: String::new(),
+        reflectance: [red, green, blue],
+        emission: [0.0; 3],
+        double_sided: false,
+        textures: Textures::default(),
+    }
 }
 
 /// The part under its name, with elements of its own size or of the scene's.
