@@ -173,9 +173,10 @@ fn directions_point_to_where_light_comes_from() {
     let mut seen = 0;
     for (light, direction) in light.iter().zip(&directions).filter(|(light, _)| light[0] > 0.5) {
         let length = direction.iter().map(|d| d * d).sum::<f32>().sqrt();
-        // Between gathered texels a direction may be off by 0.05 along each axis, which shortens it by the square of that.
+        // Between gathered texels a direction may be off by 0.01 along each axis; margins hold the mean of neighbours, and on
+        // the walls the lamp's direction turns by up to 0.1 a texel.
         assert!(
-            (length - 1.0).abs() <= 5e-3,
+            (length - 1.0).abs() <= 0.02,
             "{length} long where {light:?} comes from one lamp: {direction:?}"
         );
         seen += 1;

@@ -7,7 +7,7 @@ use glam::dvec2;
 use std::f64::consts::PI;
 
 fn checkers(x: u32, y: u32) -> [u8; 4] {
-    if (x + y) % 2 == 0 { [255, 128, 40, 255] } else { [64, 16, 200, 255] }
+    if (x + y).is_multiple_of(2) { [255, 128, 40, 255] } else { [64, 16, 200, 255] }
 }
 
 #[test]
@@ -67,7 +67,7 @@ fn each_element_has_the_texels_it_lies_on() {
 #[test]
 fn half_lit_texels_emit_half() {
     let workshop = Workshop::new();
-    let lit = |x: u32, _| if x % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] };
+    let lit = |x: u32, _| if x.is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
     std::fs::write(workshop.path("lamps.png"), png(16, 1, lit)).expect("an image");
     let model = Model::of(&[Node::new("wall", wall(grey(0.5, 5.0 * PI)))]);
     let mut model = with_coordinates(model, |p| [p.x / 3.0, p.y / 2.0]);

@@ -96,9 +96,8 @@ fn averages(prepared: &Prepared) -> [Rgb; 2] {
     for part in &prepared.parts {
         for (i, element) in part.geometry.elements.iter().enumerate() {
             area += element.area;
-            for c in 0..3 {
-                sums[0][c] += element.area * part.optics.reflectance[i][c];
-                sums[1][c] += element.area * part.optics.emission[i][c];
+            for (sum, values) in sums.iter_mut().zip([&part.optics.reflectance, &part.optics.emission]) {
+                sum.iter_mut().zip(values[i]).for_each(|(sum, value)| *sum += element.area * value);
             }
         }
     }

@@ -3,9 +3,11 @@
 //! What shines by itself is seen sharply: its form factors are exact and averaged over the piece. What is reflected is
 //! smooth: its irradiance is gathered at points, with the same exact visibility.
 //!
-//!     surfaces that shine, sun  → direct, averaged over the piece
-//!     points and spots of light → direct, clipped exactly
-//!     radiosity ρH of all elements, sky → reflected, at a point
+//! ```text
+//! surfaces that shine, suns → direct, averaged over the piece
+//! points and spots of light → direct, clipped exactly
+//! radiosity ρH of all elements, sky → reflected, at a point
+//! ```
 
 pub mod average;
 mod directions;

@@ -13,7 +13,7 @@ use equilux_formats::Rgb;
 const OFF: f64 = 0.01;
 
 /// A direction may be off by this along each axis.
-const TURNED: f64 = 0.05;
+const TURNED: f64 = 0.01;
 
 /// Gives texels their light.
 pub struct TexelLight<'a> {
