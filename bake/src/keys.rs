@@ -148,14 +148,18 @@ pub fn placed_manifest(
     manifest
 }
 
-/// The same of the block between the sky's cells and an instance.
+/// The same of the block between the sky's cells and an instance, and where the instance itself stands: the sky does not turn
+/// with it.
 pub fn sky_manifest(
     instances: &[Instance],
     parts: &[Known],
     resolution: Resolution,
     instance: usize,
 ) -> Manifest {
-    placed_manifest(instances, parts, resolution, instance, "sky").setting("sky's cells", SKY_CELLS)
+    let own = &instances[instance];
+    placed_manifest(instances, parts, resolution, instance, "sky")
+        .setting("sky's cells", SKY_CELLS)
+        .setting("placement", Seen::new(parts[own.part.index()], own.placement))
 }
 
 /// Every other instance by its number, as one instance sees it.

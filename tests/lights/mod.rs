@@ -346,6 +346,27 @@ fn a_sky_picture_shines_from_where_it_shows_light() {
 }
 
 #[test]
+fn a_sky_does_not_turn_with_the_scene() {
+    // One file, turned as a whole: nothing moves as its parts see each other, and the cache holds what it was before.
+    let workshop = Workshop::new();
+    let sky = picture(&workshop, "exr", |to| if to.x > 0.0 { 1.0 } else { 0.0 });
+    let job = workshop.job(Division::Authored);
+    let table = workshop.path("elements.csv");
+    let job = Job { sky: Some(Sky::Picture(sky)), elements: Some(table.clone()), ..job };
+    let sheet = rectangle(part(grey(0.0, 0.0)), DVec3::ZERO, DVec3::Y, DVec3::Z);
+    // Half a turn about y makes what looked to +x look to −x.
+    for (rotation, expected) in
+        [([0.0, 0.0, 0.0, 1.0], PI), ([0.0, 1.0, 0.0, 0.0], 0.0), ([0.0, 0.0, 0.0, 1.0], PI)]
+    {
+        let turned = Model::of(&[Node::new("sheet", sheet.clone())]);
+        turned.with("/nodes/0/rotation", serde_json::json!(rotation)).write(&job.scene);
+        assembled(&job);
+        let found = Table::read(&table).number(0, "H_r");
+        assert!((found - expected).abs() <= 0.03 * PI, "{found} turned by {rotation:?}, expected {expected}");
+    }
+}
+
+#[test]
 fn skies_that_cannot_be_are_named_before_any_work() {
     let workshop = Workshop::with(&[Node::new("floor", floor())]);
     std::fs::write(workshop.path("broken.hdr"), "no picture").expect("a file");
