@@ -64,7 +64,11 @@ fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> 
 
 /// Optics of all elements, instance after instance.
 pub fn whole_optics(placed: &Placed) -> Optics {
-    let each: Vec<Optics> = (0..placed.instances.len()).map(|k| placed.optics_of(k)).collect();
+    whole(&(0..placed.instances.len()).map(|k| placed.optics_of(k)).collect::<Vec<_>>())
+}
+
+/// Optics of instances, one after the other.
+pub fn whole(each: &[Optics]) -> Optics {
     Optics {
         reflectance: each.iter().flat_map(|o| o.reflectance.iter().copied()).collect(),
         emission: each.iter().flat_map(|o| o.emission.iter().copied()).collect(),

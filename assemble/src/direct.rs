@@ -93,14 +93,6 @@ pub fn driven(optics: &Optics, direct: &[Rgb]) -> Optics {
     Optics { emission, reflectance: optics.reflectance.clone() }
 }
 
-/// One instance after the other.
-pub fn whole(optics: &[Optics]) -> Optics {
-    Optics {
-        reflectance: optics.iter().flat_map(|o| o.reflectance.iter().copied()).collect(),
-        emission: optics.iter().flat_map(|o| o.emission.iter().copied()).collect(),
-    }
-}
-
 /// H with D.
 pub fn with_direct(irradiance: &mut [Rgb], direct: &[Vec<Rgb>]) {
     irradiance.iter_mut().zip(direct.iter().flatten()).for_each(|(h, &d)| *h = added(*h, d));

@@ -1,9 +1,9 @@
 //! The whole run: scene → baked parts → coupling → exchange → outputs and report.
 
 use crate::account::refuse_endless_light;
-use crate::classic::{classic, whole_optics};
+use crate::classic::{classic, whole, whole_optics};
 use crate::coupling::{Coupled, Coupler};
-use crate::direct::{direct, driven, whole, with_direct};
+use crate::direct::{direct, driven, with_direct};
 use crate::exchange::{Goal, Method, exchange, nodes};
 use crate::explain::explained;
 use crate::gather::outside::{LightUnits, lights};
@@ -79,7 +79,8 @@ pub struct Job {
 /// Run the job; everything is written when this returns.
 pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let start = Instant::now();
-    let scene = import_scene(&job.scene)?;
+    let mut scene = import_scene(&job.scene)?;
+    scene.sources.extend(job.sky.as_ref().and_then(Sky::file).map(Path::to_path_buf));
     let prepared = prepare(&scene, &job.preparation)?;
     check_writable(job, &scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
@@ -93,18 +94,11 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let element_size = prepared.element_size.to_string();
     let oven = Oven { store: &store, file: &job.scene, resolution: job.preparation.resolution, monitor };
     let mut placed = bake_parts(&oven, prepared)?.ok_or_else(stopped)?;
-    let coupled = couple(job, &placed, &store, monitor)?.ok_or_else(stopped)?;
+    let coupled = couple(&coupler(job, &placed, &store, monitor))?.ok_or_else(stopped)?;
     placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
 
     let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
-    let coupler = Coupler {
-        placed: &placed,
-        store: &store,
-        file: &job.scene,
-        resolution: job.preparation.resolution,
-        monitor,
-    };
-    let direct = direct(&coupler, &lights)?.ok_or_else(stopped)?;
+    let direct = direct(&coupler(job, &placed, &store, monitor), &lights)?.ok_or_else(stopped)?;
     let driven: Vec<Optics> =
         (0..placed.instances.len()).map(|k| driven(&placed.optics_of(k), &direct.irradiance[k])).collect();
     let optics = whole_optics(&placed);
@@ -130,9 +124,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     };
     let Written { paths: outputs, notes } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {
-        let picture = job.sky.as_ref().and_then(Sky::file).map(Path::to_path_buf);
-        let sources: Vec<PathBuf> = scene.sources.iter().cloned().chain(picture).collect();
-        depfile::write(path, &job.out.join(&scene.name).join(RESULT), &sources)?;
+        depfile::write(path, &job.out.join(&scene.name).join(RESULT), &scene.sources)?;
     }
     let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     let run = Run {
@@ -151,15 +143,16 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         report.explained = explained(&placed, &coupled);
     }
     report.seconds.total = start.elapsed().as_secs_f64();
-    report.notes = [scene.notes, damage_notes(&store), report.notes, notes].concat();
-    if let Some(Swept { dropped, .. }) = swept.filter(|swept| swept.dropped.files > 0) {
-        let note = format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes);
-        report.notes.push(note);
-    }
-    if job.verify && classic.is_none() {
-        report.notes.push("stopped: the classic matrix was not computed, so nothing was compared".into());
-    }
+    let unverified = (job.verify && classic.is_none())
+        .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned());
+    let last = dropped_note(swept).into_iter().chain(unverified).collect();
+    report.notes = [scene.notes, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
+}
+
+fn dropped_note(swept: Option<Swept>) -> Option<String> {
+    let Swept { dropped, .. } = swept.filter(|swept| swept.dropped.files > 0)?;
+    Some(format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes))
 }
 
 fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
@@ -172,9 +165,11 @@ fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
     Ok(Some(Placed::new(parts, prepared.instances)))
 }
 
-fn couple(job: &Job, placed: &Placed, store: &Store, monitor: &Monitor) -> Result<Option<Vec<Coupled>>> {
-    let resolution = job.preparation.resolution;
-    let coupler = Coupler { placed, store, file: &job.scene, resolution, monitor };
+fn coupler<'a>(job: &'a Job, placed: &'a Placed, store: &'a Store, monitor: &'a Monitor) -> Coupler<'a> {
+    Coupler { placed, store, file: &job.scene, resolution: job.preparation.resolution, monitor }
+}
+
+fn couple(coupler: &Coupler) -> Result<Option<Vec<Coupled>>> {
     coupler.read_ahead();
-    (0..placed.instances.len()).map(|k| coupler.couple(k)).collect()
+    (0..coupler.placed.instances.len()).map(|k| coupler.couple(k)).collect()
 }

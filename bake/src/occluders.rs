@@ -8,7 +8,7 @@ use crate::meshes::Mesh;
 use crate::outline::{Edge, Outline, Plane};
 use crate::planes::FLATNESS;
 use crate::treecode::box_corners;
-use crate::visibility::BoxTree;
+use crate::visibility::{BoxTree, Inside};
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -93,6 +93,31 @@ impl Occluders {
             all.extend(inside.collect::<Vec<_>>());
         }
         Self { tree, all, of_face }
+    }
+
+    /// Whether `found` is true of any occluder whose box `misses` does not rule out; both are given boxes or what is in them.
+    pub fn any(
+        &self,
+        misses: impl Fn(DVec3, DVec3) -> bool,
+        mut found: impl FnMut(&Occluder) -> bool,
+    ) -> bool {
+        let mut open: Vec<usize> = self.tree.root().into_iter().collect();
+        while let Some(index) = open.pop() {
+            let node = self.tree.node(index);
+            if misses(node.low, node.high) {
+                continue;
+            }
+            match self.tree.inside(index) {
+                Inside::Boxes(pair) => open.extend(pair),
+                Inside::Things(things) => {
+                    let mut things = things.iter().map(|&thing| &self.all[thing as usize]);
+                    if things.any(|occluder| !misses(occluder.low, occluder.high) && found(occluder)) {
+                        return true;
+                    }
+                }
+            }
+        }
+        false
     }
 
     /// An occluder, if it is a mesh.

@@ -1,16 +1,14 @@
 //! An edited scene takes from the cache what the edit cannot have changed, and nothing else: after each of many edits the
 //! blocks are those that are computed from nothing.
 
-use equilux_assemble::coupling::{Coupled, Coupler};
+use equilux_assemble::coupling::Coupled;
 use equilux_assemble::placed::Placed;
 use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::gltf_import::import_scene;
-use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::Oven;
-use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::{EXACT, Resolution};
-use equilux_formats::{Rows, Store};
+use equilux_formats::Rows;
+use equilux_tests::lit::coupled;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{half, paint};
 use equilux_tests::shapes::{coupling, joined, moved, solid};
@@ -131,14 +129,7 @@ fn blocks(file: &Path, cache: &Path, resolution: Resolution) -> (Placed, Vec<Cou
         resolution,
         local_solver: None,
     };
-    let prepared = prepare(&import_scene(file).expect("a scene"), &wanted).expect("elements");
-    let (store, monitor) = (Store::open(cache).expect("a cache"), Monitor::default());
-    let oven = Oven { store: &store, file, resolution, monitor: &monitor };
-    let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked").expect("not stopped"));
-    let placed = Placed::new(parts.collect(), prepared.instances);
-    let coupler = Coupler { placed: &placed, store: &store, file, resolution, monitor: &monitor };
-    let couple = |k: usize| coupler.couple(k).expect("coupled").expect("not stopped");
-    let coupled: Vec<Coupled> = (0..placed.instances.len()).map(couple).collect();
+    let (placed, coupled) = coupled(file, cache, &wanted);
     let computed = coupled.iter().map(|c| c.computed + c.corrected.as_ref().map_or(0, |c| c.computed)).sum();
     (placed, coupled, computed)
 }

@@ -2,12 +2,11 @@
 //! a pyramid from the light, what is left of the polygon after all pyramids is lit, and a point of intensity I sends
 //! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
-use super::average::{Piece, centre};
+use super::average::{Piece, cells, centre};
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::Polygon;
 use equilux_bake::outline::Plane;
 use equilux_bake::shaft::Shaft;
-use equilux_bake::visibility::Inside;
 use equilux_bake::world::World;
 use equilux_formats::{FaceId, LightKind, PunctualLight, Rgb};
 use glam::DVec3;
@@ -36,7 +35,7 @@ pub struct Cone {
 /// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-6.
 const FAR: f64 = 1e6;
 
-/// The cosines of a spot's cones differ by at least this.
+/// The cosines of a spot's cones are taken to differ by at least this, as KHR_lights_punctual does against division by zero.
 const SHARP: f64 = 1e-9;
 
 /// Polygons that a spot's edge may pass through are cut this often along each side.
@@ -49,7 +48,6 @@ impl Lamp {
         match light.kind {
             LightKind::Point => point,
             LightKind::Spot { inner, outer } => {
-                // As the extension has it, where the cones may coincide.
                 let scale = 1.0 / (inner.cos() - outer.cos()).max(SHARP);
                 Self {
                     cone: Some(Cone { direction: light.direction, scale, offset: -outer.cos() * scale }),
@@ -66,11 +64,10 @@ impl Lamp {
 
     /// The average irradiance of pieces, W/m².
     pub fn irradiance(&self, world: &World, pieces: &[Piece]) -> Vec<Rgb> {
-        let root = world.occluders.tree.root();
-        pieces.par_iter().map(|piece| self.over(world, root, piece)).collect()
+        pieces.par_iter().map(|piece| self.over(world, piece)).collect()
     }
 
-    fn over(&self, world: &World, root: Option<usize>, piece: &Piece) -> Rgb {
+    fn over(&self, world: &World, piece: &Piece) -> Rgb {
         let dark = [0.0; 3];
         if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 || piece.area <= 0.0 {
             return dark;
@@ -79,7 +76,7 @@ impl Lamp {
         let Some(face) = piece.plane.face_at(middle) else { return dark };
         let mut lit: Vec<Polygon> = vec![piece.corners.iter().map(|&p| p - self.position).collect()];
         let plane = Plane { normal: piece.normal, point: piece.corners[0] };
-        self.occluders(world, root, piece, &mut |number| {
+        self.occluders(world, piece, |number| {
             if world.coplanar(face, FaceId(number)) {
                 return;
             }
@@ -95,36 +92,24 @@ impl Lamp {
     }
 
     /// Call `visit` with the number of every face that may stand between the light and a piece.
-    fn occluders(&self, world: &World, root: Option<usize>, piece: &Piece, visit: &mut impl FnMut(u32)) {
+    fn occluders(&self, world: &World, piece: &Piece, mut visit: impl FnMut(u32)) {
         let low = piece.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = piece.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let mut shaft = Shaft::between((self.position, self.position), (low, high));
         shaft.bound(piece.corners[0], -piece.normal);
-        let tree = &world.occluders.tree;
-        let mut open: Vec<usize> = root.into_iter().collect();
-        while let Some(index) = open.pop() {
-            let node = tree.node(index);
-            if shaft.misses_box(node.low, node.high) {
-                continue;
-            }
-            match tree.inside(index) {
-                Inside::Boxes(pair) => open.extend(pair),
-                Inside::Things(things) => {
-                    for &thing in things {
-                        let occluder = &world.occluders.all[thing as usize];
-                        if !shaft.misses_box(occluder.low, occluder.high) {
-                            occluder.faces.iter().for_each(|&face| visit(face));
-                        }
-                    }
-                }
-            }
-        }
+        world.occluders.any(
+            |low, high| shaft.misses_box(low, high),
+            |occluder| {
+                occluder.faces.iter().for_each(|&face| visit(face));
+                false
+            },
+        );
     }
 
     /// ∫ I(ω)/I dω over a polygon as the light sees it.
     fn share(&self, polygon: &[DVec3], normal: DVec3) -> f64 {
         let Some(cone) = &self.cone else { return solid_angle(polygon) };
-        let pieces = super::average::cells(polygon, CUTS);
+        let pieces = cells(polygon, CUTS);
         pieces.iter().map(|cell| solid_angle(cell) * cone.falloff(centre(cell, normal).0)).sum()
     }
 }

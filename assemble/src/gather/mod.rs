@@ -21,12 +21,14 @@ use crate::placed::Placed;
 use equilux_bake::equilibrium::{added, apply, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
-use equilux_bake::visibility::Inside;
 use equilux_bake::world::World;
 use equilux_formats::{Corners, Element, FaceId, Geometry, MaterialId, Rgb, Rows};
 use faces::Faces;
 use glam::DVec3;
 use lamps::Lamp;
+
+/// What is nearer to a plane than this share of the region that is looked at lies in it: corners come from f32.
+const IN_PLANE: f64 = 1e-6;
 
 /// A scene in equilibrium, ready to be asked.
 pub struct Gather {
@@ -133,29 +135,10 @@ impl Gather {
 
     /// Whether anything with corners on the lit side of the plane through `point` may lie in a box.
     pub fn anything_before(&self, (low, high): (DVec3, DVec3), point: DVec3, normal: DVec3) -> bool {
-        let slack = 1e-6 * (high - low).length();
+        let slack = IN_PLANE * (high - low).length();
         let before = |corner: &DVec3| normal.dot(*corner - point) > slack;
-        let tree = &self.world.occluders.tree;
-        let mut open: Vec<usize> = tree.root().into_iter().collect();
-        while let Some(index) = open.pop() {
-            let node = tree.node(index);
-            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
-                continue;
-            }
-            match tree.inside(index) {
-                Inside::Boxes(pair) => open.extend(pair),
-                Inside::Things(things) => {
-                    let near =
-                        things.iter().map(|&thing| &self.world.occluders.all[thing as usize]).any(|o| {
-                            o.low.cmple(high).all() && o.high.cmpge(low).all() && o.corners.iter().any(before)
-                        });
-                    if near {
-                        return true;
-                    }
-                }
-            }
-        }
-        false
+        let apart = |box_low: DVec3, box_high: DVec3| box_low.cmpgt(high).any() || box_high.cmplt(low).any();
+        self.world.occluders.any(apart, |occluder| occluder.corners.iter().any(before))
     }
 
     fn from(&self, points: &[Element], senders: &[usize], sent: &[Rgb], resolution: Resolution) -> Vec<Rgb> {
