@@ -156,7 +156,7 @@ Examples:
   assemble plan scenes/house/house.gltf                what would be computed, and why
   assemble scenes/house/house.gltf --lightmaps         with lightmaps for game engines
   assemble scenes/house/house.gltf --watch             again whenever one of its files is saved
-Ctrl-C ends the exchange after the current round; everything is still written.";
+Ctrl-C ends the exchange after the current round; everything is still written. Later it ends lightmaps, and\nonly they are not. A second one ends the program at once.";
 
 /// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
 pub fn main() -> ExitCode {
@@ -196,12 +196,15 @@ fn watched(assembly: &Assembly, explain: bool) -> anyhow::Result<()> {
     assembly.options.set_threads()?;
     let monitor = progress::monitor_for_program();
     let mut last_notes = Vec::new();
-    watch(&assembly.job().scene, &monitor, |why| match assemble(assembly, explain, &monitor) {
-        Ok(report) => {
-            print!("{}", said(assembly, &report, |report| short(why, report, &last_notes)));
-            last_notes = report.notes;
+    let job = assembly.job();
+    watch(&job.scene, job.sky.as_ref().and_then(Sky::file), &monitor, |why| {
+        match assemble(assembly, explain, &monitor) {
+            Ok(report) => {
+                print!("{}", said(assembly, &report, |report| short(why, report, &last_notes)));
+                last_notes = report.notes;
+            }
+            Err(error) => eprintln!("error: {error:#}"),
         }
-        Err(error) => eprintln!("error: {error:#}"),
     })?;
     Ok(())
 }

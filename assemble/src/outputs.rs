@@ -116,8 +116,13 @@ fn write_lightmaps(
     let texel_light = TexelLight::new(&gather, mean_over_area(placed, &outcome.irradiance));
     let mut lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
     if wanted.directions {
-        lightmap = lightmap.with_directions(|texels| texel_light.directions(texels), monitor);
+        let directions = |texels: &_| texel_light.directions(texels);
+        lightmap = lightmap.and_then(|lightmap| lightmap.with_directions(directions, monitor));
     }
+    let Some(lightmap) = lightmap else {
+        let note = "stopped: no lightmaps were written; those of an earlier run are as they were";
+        return Ok(Some(Saved { paths: vec![], notes: vec![note.into()] }));
+    };
     lightmap::write(folder, &lightmap, wanted.units, exposure).map(Some)
 }
 

@@ -25,9 +25,9 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Of a scene that cannot be read it is not known where its files lie: it is tried again this often.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Call `run` now and whenever the scene in `file` has changed, with the reason, until the monitor is stopped. Fails where
+/// Call `run` now and whenever the scene in `file` or what lies in `beside` has changed, with the reason, until the monitor is stopped. Fails where
 /// folders cannot be watched.
-pub fn watch(file: &Path, monitor: &Monitor, mut run: impl FnMut(&str)) -> Result<()> {
+pub fn watch(file: &Path, beside: Option<&Path>, monitor: &Monitor, mut run: impl FnMut(&str)) -> Result<()> {
     let (sender, events) = channel();
     let watcher = notify::recommended_watcher(move |_| {
         // Nobody listens any more once the watch is over.
@@ -37,7 +37,7 @@ pub fn watch(file: &Path, monitor: &Monitor, mut run: impl FnMut(&str)) -> Resul
         Folders { watcher: watcher.map_err(|error| unwatchable(file, &error))?, watched: HashSet::new() };
     let mut why = "first run".to_owned();
     loop {
-        let state = State::of(file);
+        let state = State::of(file, beside);
         folders.watch(file, &state)?;
         run(&why);
         loop {
@@ -45,7 +45,7 @@ pub fn watch(file: &Path, monitor: &Monitor, mut run: impl FnMut(&str)) -> Resul
             if monitor.stopped() {
                 return Ok(());
             }
-            if let Some(change) = state.change(file) {
+            if let Some(change) = state.change(file, beside) {
                 why = change;
                 break;
             }
@@ -63,15 +63,15 @@ enum State {
 }
 
 impl State {
-    fn of(file: &Path) -> Self {
+    fn of(file: &Path, beside: Option<&Path>) -> Self {
         match import_scene(file) {
-            Ok(scene) => Self::Files(digests(scene.sources)),
+            Ok(scene) => Self::Files(digests(scene.sources.into_iter().chain(beside.map(Path::to_path_buf)))),
             Err(error) => Self::Broken(error.to_string()),
         }
     }
 
     /// What has changed since, for a person.
-    fn change(&self, file: &Path) -> Option<String> {
+    fn change(&self, file: &Path, beside: Option<&Path>) -> Option<String> {
         let changed: Vec<String> = match self {
             Self::Files(old) => {
                 let new = digests(old.keys().cloned());
@@ -80,7 +80,7 @@ impl State {
                     .map(|(path, _)| name(path))
                     .collect()
             }
-            Self::Broken(_) if Self::of(file) == *self => vec![],
+            Self::Broken(_) if Self::of(file, beside) == *self => vec![],
             Self::Broken(_) => vec![name(file)],
         };
         (!changed.is_empty()).then(|| format!("{} changed", changed.join(", ")))

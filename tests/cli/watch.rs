@@ -32,9 +32,10 @@ impl Drop for Watching {
 }
 
 impl Watching {
-    fn scene_of(workshop: &Workshop) -> Self {
+    fn scene_of(workshop: &Workshop, more: &[&str]) -> Self {
         let mut child = Command::new(program("assemble"))
             .args(["scene.gltf", "--watch", "--element-size", "1"])
+            .args(more)
             .current_dir(workshop.path(""))
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -87,7 +88,7 @@ fn text(mut model: Model) -> String {
 fn a_saved_file_is_assembled_again_and_an_error_does_not_end_the_watch() {
     let workshop = Workshop::new();
     write(&workshop, 4.0);
-    let mut watching = Watching::scene_of(&workshop);
+    let mut watching = Watching::scene_of(&workshop, &[]);
     watching.says(&["first run: 1 part baked, "]);
     // The pictures that it writes beside the scene are no change, nor is a file saved as it was.
     write(&workshop, 4.0);
@@ -108,4 +109,21 @@ fn a_saved_file_is_assembled_again_and_an_error_does_not_end_the_watch() {
     assert!(sent.expect("kill runs").success());
     let ended = watching.child.wait().expect("it ends");
     assert_eq!(ended.code(), Some(0), "exit code after Ctrl-C");
+}
+
+#[test]
+fn a_saved_sky_is_a_change_that_computes_nothing() {
+    let workshop = Workshop::new();
+    write(&workshop, 4.0);
+    let sky = |radiance: f32| {
+        let picture = image::Rgb32FImage::from_pixel(8, 4, image::Rgb([radiance; 3]));
+        picture.save(workshop.path("sky.exr")).expect("a picture");
+    };
+    sky(1.0);
+    let mut watching = Watching::scene_of(&workshop, &["--sky", "sky.exr"]);
+    watching.says(&["first run: 1 part baked, "]);
+    sky(2.0);
+    watching.says(&["sky.exr changed: 0 parts baked, 0 form factors computed, "]);
+    watching.child.kill().expect("it runs until then");
+    watching.child.wait().expect("it ends");
 }

@@ -48,7 +48,8 @@ fn charts_do_not_bleed_into_each_other() {
         &atlas,
         |texels| texels.texels.iter().map(|_| [white(texels.patches[0].normal); 3]).collect(),
         &Monitor::default(),
-    );
+    )
+    .expect("nobody stops it");
     let mut seen = [0, 0];
     for (tile, point, value) in lookups(&lightmap) {
         let (chart, _) = atlas.chart_of(&lightmap.tiles[tile]);
@@ -68,10 +69,24 @@ fn even_light_stays_even_everywhere() {
     let atlas = Atlas::new(&scene, None).expect("an atlas");
     let even =
         |texels: &equilux_assemble::lightmap::texels::Texels| vec![[0.25, 0.5, 0.75]; texels.texels.len()];
-    let lightmap = Lightmap::new(&scene, &atlas, even, &Monitor::default());
+    let lightmap = Lightmap::new(&scene, &atlas, even, &Monitor::default()).expect("nobody stops it");
     for (tile, point, value) in lookups(&lightmap) {
         assert!((value - 0.5).abs() < 1e-14, "{value} at {point} of chart {tile}, expected 0.5");
     }
+}
+
+/// A wish to stop ends a lightmap; one from before it began, when the exchange was to end, does not.
+#[test]
+fn a_lightmap_can_be_stopped_while_it_is_made() {
+    let scene = shapes();
+    let atlas = Atlas::new(&scene, Some(0.2)).expect("an atlas");
+    let monitor = Monitor::default();
+    let stops = |texels: &equilux_assemble::lightmap::texels::Texels| {
+        monitor.stop();
+        vec![[1.0; 3]; texels.texels.len()]
+    };
+    assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_none(), "stopped at its first texels");
+    assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_some(), "stopped long before");
 }
 
 /// The default gives an image of about 1024² texels for scenes of any size.

@@ -87,37 +87,40 @@ const BAND: u32 = 16384;
 
 impl<'a> Lightmap<'a> {
     /// The lightmap of `scene`. `irradiance` gives texels theirs, W/m² of linear RGB, not divided by π, in their order.
+    /// None if the monitor was stopped meanwhile; a stop that was asked for before was for something else.
     pub fn new(
         scene: &'a Scene,
         atlas: &'a Atlas,
         irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
         monitor: &Monitor,
-    ) -> Self {
+    ) -> Option<Self> {
         let tiles = atlas.tiles();
-        let values = values(scene, atlas, &tiles, irradiance, monitor);
+        let values = values(scene, atlas, &tiles, irradiance, monitor)?;
         let (mut irradiance, holds) = with_margins(values, &tiles);
-        let tints = tints::coats(scene).map(|coats| {
-            [Of::Reflectance, Of::Emission].map(|of| {
+        let mut tints = None;
+        if let Some(coats) = tints::coats(scene) {
+            let tint = |of: Of| {
                 let tint = |texels: &Texels| tints::tints(scene, &coats, texels, of);
-                with_margins(self::values(scene, atlas, &tiles, tint, monitor), &tiles).0
-            })
-        });
+                Some(with_margins(self::values(scene, atlas, &tiles, tint, monitor)?, &tiles).0)
+            };
+            tints = Some([tint(Of::Reflectance)?, tint(Of::Emission)?]);
+        }
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
         let materials = materials.collect();
-        Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds }
+        Some(Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds })
     }
 
     /// The same with the mean direction that each texel's light comes from, which `directions` gives: scene coordinates, weighted
-    /// by what comes from there, so that it is as long as light is directed, 0 to 1.
+    /// by what comes from there, so that it is as long as light is directed, 0 to 1. None as in [`Lightmap::new`].
     pub fn with_directions(
         mut self,
         directions: impl Fn(&Texels) -> Vec<[f64; 3]> + Sync,
         monitor: &Monitor,
-    ) -> Self {
-        let values = values(self.scene, self.atlas, &self.tiles, directions, monitor);
+    ) -> Option<Self> {
+        let values = values(self.scene, self.atlas, &self.tiles, directions, monitor)?;
         self.directions = Some(with_margins(values, &self.tiles).0);
-        self
+        Some(self)
     }
 
     /// The material of a tile.
@@ -141,18 +144,22 @@ impl<'a> Lightmap<'a> {
     }
 }
 
-/// The irradiance of texels that hold some of a chart, for each tile.
+/// The irradiance of texels that hold some of a chart, for each tile; none if the monitor was stopped meanwhile.
 fn values(
     scene: &Scene,
     atlas: &Atlas,
     tiles: &[Tile],
     irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
     monitor: &Monitor,
-) -> Vec<Vec<Option<Rgb>>> {
+) -> Option<Vec<Vec<Option<Rgb>>>> {
     let in_bands = |(number, tile): (usize, &Tile)| bands(tile.size).map(move |rows| (number, rows));
     let bands: Vec<(usize, Range<u32>)> = tiles.iter().enumerate().flat_map(in_bands).collect();
     monitor.begin("lightmap", bands.len());
-    let light_in = |(number, rows): &(usize, Range<u32>)| -> Vec<([u32; 2], Rgb)> {
+    let before = monitor.stopped();
+    let light_in = |(number, rows): &(usize, Range<u32>)| -> Option<Vec<([u32; 2], Rgb)>> {
+        if monitor.stopped() != before {
+            return None;
+        }
         let tile = &tiles[*number];
         let (chart, grid) = atlas.chart_of(tile);
         let placement = scene.instances[tile.instance].placement;
@@ -161,9 +168,9 @@ fn values(
         assert_eq!(light.len(), texels.texels.len(), "one value a texel");
         assert!(light.iter().flatten().all(|h| h.is_finite()), "irradiance must be a number: {light:?}");
         monitor.advance(1);
-        texels.texels.iter().map(|texel| texel.at).zip(light).collect()
+        Some(texels.texels.iter().map(|texel| texel.at).zip(light).collect())
     };
-    let lit: Vec<_> = bands.par_iter().map(light_in).collect();
+    let lit: Vec<_> = bands.par_iter().map(light_in).collect::<Option<_>>()?;
     let mut values: Vec<Vec<Option<Rgb>>> = tiles.iter().map(|tile| vec![None; tile.texels()]).collect();
     for ((number, _), lit) in bands.iter().zip(lit) {
         let width = tiles[*number].size[0];
@@ -171,7 +178,7 @@ fn values(
             values[*number][(y * width + x) as usize] = Some(light);
         }
     }
-    values
+    Some(values)
 }
 
 /// Light for texels around charts too, zero for all others, and which is which.
