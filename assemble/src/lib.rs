@@ -12,6 +12,7 @@ pub mod cli;
 pub mod coupling;
 pub mod direct;
 pub mod elements_csv;
+pub mod equation;
 pub mod exchange;
 mod explain;
 pub mod exposure;

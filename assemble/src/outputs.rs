@@ -4,20 +4,19 @@ use crate::account::mean_over_area;
 use crate::camera::View;
 use crate::canvas::Canvas;
 use crate::classic::Classic;
+use crate::equation::Equation;
 use crate::exchange::Outcome;
 use crate::exposure::Exposure;
-use crate::gather::{Gather, Lights};
 use crate::lightmap::atlas::Atlas;
 use crate::lightmap::light::TexelLight;
 use crate::lightmap::{self, Lightmap, Saved};
 use crate::picture::{shade, wireframe, write_png};
-use crate::placed::Placed;
 use crate::run::{Job, Pictures};
 use crate::scene_light::SceneLight;
 use crate::{elements_csv, gltf_export};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::visibility::rays::RayIndex;
-use equilux_formats::{Error, Optics, Result, Rgb, Scene};
+use equilux_formats::{Error, Result, Rgb, Scene};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -26,18 +25,14 @@ pub const RESULT: &str = "result.glb";
 
 /// What there is to show.
 pub struct Light<'a> {
-    /// The parts in their places.
-    pub placed: &'a Placed,
-    /// Optics of all elements.
-    pub optics: &'a Optics,
+    /// What was solved.
+    pub equation: &'a Equation,
     /// The exchange.
     pub outcome: &'a Outcome,
     /// The classic solution, if asked for.
     pub classic: Option<&'a Classic>,
     /// The plan of the lightmap, if asked for.
     pub atlas: Option<&'a Atlas>,
-    /// What shines from outside.
-    pub lights: &'a Lights,
 }
 
 /// What was written.
@@ -79,15 +74,15 @@ fn unusable(folder: &Path, error: &std::io::Error) -> Error {
 pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> Result<Written> {
     let folder = job.out.join(&scene.name);
     prepare_folder(&folder)?;
-    let elements = &light.placed.world.elements;
+    let elements = &light.equation.placed.world.elements;
     let mut lines = Vec::new();
     let exposure = if job.pictures == Pictures::None {
-        Exposure::choose(|| 0..elements.len(), &light.outcome.radiosity, &light.optics.emission)
+        Exposure::choose(|| 0..elements.len(), &light.outcome.radiosity, &light.equation.optics.emission)
     } else {
         let index = RayIndex::new(elements);
         let canvas = Canvas::trace(View::of_scene(&scene.cameras, elements, &index), &index);
         let exposure =
-            Exposure::choose(|| canvas.elements(), &light.outcome.radiosity, &light.optics.emission);
+            Exposure::choose(|| canvas.elements(), &light.outcome.radiosity, &light.equation.optics.emission);
         lines.extend(draw_all(job, &folder, light, &canvas, exposure, monitor)?);
         exposure
     };
@@ -110,10 +105,9 @@ fn write_lightmaps(
     monitor: &Monitor,
 ) -> Result<Option<Saved>> {
     let (Some(wanted), Some(atlas)) = (&job.lightmaps, light.atlas) else { return Ok(None) };
-    let (placed, outcome) = (light.placed, light.outcome);
-    let resolution = job.preparation.resolution;
-    let gather = Gather::new(placed, &light.optics.emission, &outcome.radiosity, light.lights, resolution);
-    let texel_light = TexelLight::new(&gather, mean_over_area(placed, &outcome.irradiance));
+    let gather = light.equation.gather(&light.outcome.radiosity);
+    let mean = mean_over_area(&light.equation.placed, &light.outcome.irradiance);
+    let texel_light = TexelLight::new(&gather, mean);
     let mut lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
     if wanted.directions {
         let directions = |texels: &_| texel_light.directions(texels);
@@ -154,7 +148,7 @@ fn draw_all(
     }
     if job.pictures == Pictures::Rounds {
         let edges = folder.join("wireframe.png");
-        write_png(&edges, &wireframe(canvas, &light.placed.world.elements))?;
+        write_png(&edges, &wireframe(canvas, &light.equation.placed.world.elements))?;
         written.push(edges);
     }
     let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
@@ -170,14 +164,14 @@ fn picture_of(round: usize) -> String {
 }
 
 fn write_tables(job: &Job, folder: &Path, light: &Light, exposure: Exposure) -> Result<Vec<PathBuf>> {
-    let placed = light.placed;
+    let placed = &light.equation.placed;
     let part_names: Vec<String> =
         (0..placed.instances.len()).map(|k| placed.part_of(k).part.name.clone()).collect();
     let instance_names: Vec<String> = placed.instances.iter().map(|i| i.name.clone()).collect();
     let scene_light = SceneLight {
         world: &placed.world,
-        reflectance: &light.optics.reflectance,
-        emission: &light.optics.emission,
+        reflectance: &light.equation.optics.reflectance,
+        emission: &light.equation.optics.emission,
         irradiance: &light.outcome.irradiance,
         radiosity: &light.outcome.radiosity,
         part_names: &part_names,

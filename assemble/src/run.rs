@@ -1,17 +1,16 @@
 //! The whole run: scene → baked parts → coupling → exchange → outputs and report.
 
 use crate::account::refuse_endless_light;
-use crate::classic::{classic, whole, whole_optics};
-use crate::coupling::{Coupled, Coupler};
-use crate::direct::{direct, driven, with_direct};
-use crate::exchange::{Goal, Method, exchange, nodes};
+use crate::classic::{classic, whole};
+use crate::direct::with_direct;
+use crate::equation::Equation;
+use crate::exchange::{Goal, Method, exchange};
 use crate::explain::explained;
-use crate::gather::outside::{LightUnits, lights};
+use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
 use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
-use crate::placed::Placed;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::report::{Report, Run, peak_rss, summary};
@@ -19,10 +18,9 @@ use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::{Baked, Oven};
-use equilux_bake::prepare::{Preparation, Prepared, prepare};
+use equilux_bake::prepare::{Preparation, prepare};
 use equilux_bake::{depfile, stamp};
-use equilux_formats::{Error, Optics, Result, Store, Swept};
+use equilux_formats::{Result, Store, Swept};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -85,53 +83,34 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     check_writable(job, &scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
-    let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
-    let stopped = || {
-        let remedy = "run the same command again: what was finished is in the cache";
-        Error::new(&job.scene, "stopped before the form factors were complete", "a complete run", remedy)
-    };
     let element_size = prepared.element_size.to_string();
-    let oven = Oven { store: &store, file: &job.scene, resolution: job.preparation.resolution, monitor };
-    let mut placed = bake_parts(&oven, prepared)?.ok_or_else(stopped)?;
-    let coupled = couple(&coupler(job, &placed, &store, monitor))?.ok_or_else(stopped)?;
-    placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
-
-    let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
-    let direct = direct(&coupler(job, &placed, &store, monitor), &lights)?.ok_or_else(stopped)?;
-    let driven: Vec<Optics> =
-        (0..placed.instances.len()).map(|k| driven(&placed.optics_of(k), &direct.irradiance[k])).collect();
-    let optics = whole_optics(&placed);
-    let nodes = nodes(&placed, &coupled, &driven);
-    refuse_endless_light(&placed, &nodes, &whole(&driven), &job.scene)?;
-    let start_light = if job.warm { last_light(&placed, &store, &job.scene) } else { None };
+    let equation = Equation::of(job, &scene, prepared, &store, monitor)?;
+    let nodes = equation.nodes();
+    let Equation { placed, coupled, optics, direct, .. } = &equation;
+    refuse_endless_light(placed, &nodes, &whole(&equation.driven), &job.scene)?;
+    let start_light = if job.warm { last_light(placed, &store, &job.scene) } else { None };
     let mut outcome = exchange(&nodes, job.method, job.goal, start_light.as_deref(), monitor);
     if job.warm {
-        keep(&placed, &store, &job.scene, &outcome.radiosity)?;
+        keep(placed, &store, &job.scene, &outcome.radiosity)?;
     }
-    let proof = prove(&placed, &nodes, &outcome, job.exact_rows, monitor);
+    let proof = prove(placed, &nodes, &outcome, job.exact_rows, monitor);
     let peak = peak_rss();
-    let classic = if job.verify { classic(&placed, &whole(&driven), monitor) } else { None };
+    let classic = if job.verify { classic(placed, &whole(&equation.driven), monitor) } else { None };
     with_direct(&mut outcome.irradiance, &direct.irradiance);
 
-    let light = Light {
-        placed: &placed,
-        optics: &optics,
-        outcome: &outcome,
-        classic: classic.as_ref(),
-        atlas: atlas.as_ref(),
-        lights: &lights,
-    };
+    let light =
+        Light { equation: &equation, outcome: &outcome, classic: classic.as_ref(), atlas: atlas.as_ref() };
     let Written { paths: outputs, notes } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {
         depfile::write(path, &job.out.join(&scene.name).join(RESULT), &scene.sources)?;
     }
     let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     let run = Run {
-        placed: &placed,
-        coupled: &coupled,
+        placed,
+        coupled,
         nodes: &nodes,
-        optics: &optics,
+        optics,
         outcome: &outcome,
         proof: proof.as_ref(),
         classic: classic.as_ref(),
@@ -140,7 +119,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     report.bytes.peak_rss = peak;
     report.form_factors_computed += direct.computed;
     if job.explain {
-        report.explained = explained(&placed, &coupled);
+        report.explained = explained(placed, coupled);
     }
     report.seconds.total = start.elapsed().as_secs_f64();
     let unverified = (job.verify && classic.is_none())
@@ -153,23 +132,4 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
 fn dropped_note(swept: Option<Swept>) -> Option<String> {
     let Swept { dropped, .. } = swept.filter(|swept| swept.dropped.files > 0)?;
     Some(format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes))
-}
-
-fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
-    oven.read_ahead(&prepared.parts);
-    let mut parts: Vec<Baked> = Vec::new();
-    for part in &prepared.parts {
-        let Some(baked) = oven.bake(part)? else { return Ok(None) };
-        parts.push(baked);
-    }
-    Ok(Some(Placed::new(parts, prepared.instances)))
-}
-
-fn coupler<'a>(job: &'a Job, placed: &'a Placed, store: &'a Store, monitor: &'a Monitor) -> Coupler<'a> {
-    Coupler { placed, store, file: &job.scene, resolution: job.preparation.resolution, monitor }
-}
-
-fn couple(coupler: &Coupler) -> Result<Option<Vec<Coupled>>> {
-    coupler.read_ahead();
-    (0..coupler.placed.instances.len()).map(|k| coupler.couple(k)).collect()
 }
