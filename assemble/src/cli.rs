@@ -96,6 +96,10 @@ struct Assembly {
     /// Also solve the classic whole-scene matrix and print the largest difference
     #[arg(long)]
     verify: bool,
+    /// Also write the irradiance at the points of this table (columns x, y, z, nx, ny, nz), gathered there with exact
+    /// visibility: points.csv
+    #[arg(long, value_name = "FILE.csv")]
+    points: Option<PathBuf>,
     /// Write a table of all elements, their optics and their light
     #[arg(long, value_name = "FILE.csv")]
     elements: Option<PathBuf>,
@@ -197,7 +201,7 @@ fn watched(assembly: &Assembly, explain: bool) -> anyhow::Result<()> {
     let monitor = progress::monitor_for_program();
     let mut last_notes = Vec::new();
     let job = assembly.job();
-    watch(&job.scene, job.sky.as_ref().and_then(Sky::file), &monitor, |why| {
+    watch(&job.scene, &job.beside().collect::<Vec<_>>(), &monitor, |why| {
         match assemble(assembly, explain, &monitor) {
             Ok(report) => {
                 print!("{}", said(assembly, &report, |report| short(why, report, &last_notes)));
@@ -275,6 +279,7 @@ impl Assembly {
                     LightmapUnits::Bevy => Units::Bevy,
                 },
             }),
+            points: self.points.clone(),
             elements: self.elements.clone(),
             depfile: self.depfile.clone(),
             cache_limit: self.options.cache_limit,

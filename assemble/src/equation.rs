@@ -36,7 +36,13 @@ pub struct Equation {
 
 impl Equation {
     /// Compute, or take from the cache, all blocks of a scene. Fails if the monitor was stopped before they were complete.
-    pub fn of(job: &Job, scene: &Scene, prepared: Prepared, store: &Store, monitor: &Monitor) -> Result<Self> {
+    pub fn of(
+        job: &Job,
+        scene: &Scene,
+        prepared: Prepared,
+        store: &Store,
+        monitor: &Monitor,
+    ) -> Result<Self> {
         let stopped = || {
             let remedy = "run the same command again: what was finished is in the cache";
             Error::new(&job.scene, "stopped before the form factors were complete", "a complete run", remedy)

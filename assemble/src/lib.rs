@@ -26,6 +26,7 @@ mod outputs;
 pub mod picture;
 pub mod placed;
 pub mod plan;
+pub mod points;
 pub mod proof;
 pub mod report;
 pub mod run;

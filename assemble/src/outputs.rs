@@ -11,6 +11,7 @@ use crate::lightmap::atlas::Atlas;
 use crate::lightmap::light::TexelLight;
 use crate::lightmap::{self, Lightmap, Saved};
 use crate::picture::{shade, wireframe, write_png};
+use crate::points::{self, Place};
 use crate::run::{Job, Pictures};
 use crate::scene_light::SceneLight;
 use crate::{elements_csv, gltf_export};
@@ -19,6 +20,7 @@ use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Error, Result, Rgb, Scene};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// The file name of the lit model.
 pub const RESULT: &str = "result.glb";
@@ -33,6 +35,8 @@ pub struct Light<'a> {
     pub classic: Option<&'a Classic>,
     /// The plan of the lightmap, if asked for.
     pub atlas: Option<&'a Atlas>,
+    /// The places of which to tell the light, if asked for.
+    pub places: Option<&'a [Place]>,
 }
 
 /// What was written.
@@ -41,7 +45,12 @@ pub struct Written {
     pub paths: Vec<String>,
     /// What a person should know of them.
     pub notes: Vec<String>,
+    /// What the light of points took.
+    pub point_time: Duration,
 }
+
+/// The file name of the light of points.
+pub const POINTS: &str = "points.csv";
 
 /// Fail where the outputs could not be written, before hours are spent on them. Leaves nothing behind.
 pub fn check_writable(job: &Job, scene: &Scene) -> Result<()> {
@@ -88,12 +97,35 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     };
     let mut written = write_tables(job, &folder, light, exposure)?;
     let lightmaps = write_lightmaps(job, &folder, scene, light, exposure, monitor)?;
-    let notes = lightmaps.map(|lightmaps| {
-        written.extend(lightmaps.paths);
-        lightmaps.notes
-    });
+    let start = Instant::now();
+    let points = write_points(&folder, light, monitor)?;
+    let point_time = start.elapsed();
+    let mut notes = Vec::new();
+    for saved in [lightmaps, points].into_iter().flatten() {
+        written.extend(saved.paths);
+        notes.extend(saved.notes);
+    }
     lines.extend(written.iter().map(|path| path.display().to_string()));
-    Ok(Written { paths: lines, notes: notes.unwrap_or_default() })
+    Ok(Written { paths: lines, notes, point_time })
+}
+
+fn write_points(folder: &Path, light: &Light, monitor: &Monitor) -> Result<Option<Saved>> {
+    let Some(places) = light.places else { return Ok(None) };
+    let gather = light.equation.gather(&light.outcome.radiosity);
+    let elements = &light.equation.placed.world.elements;
+    let Some(lights) = points::light(&gather, elements, places, monitor) else {
+        let note = format!("stopped: {POINTS} was not written; that of an earlier run is as it was");
+        return Ok(Some(Saved { paths: vec![], notes: vec![note] }));
+    };
+    let path = folder.join(POINTS);
+    points::write(&path, places, &lights, &light.outcome.irradiance)?;
+    let lost = lights.iter().filter(|light| light.is_none()).count();
+    let notes = match lost {
+        0 => vec![],
+        1 => vec!["1 point lies on no surface that looks its way; its line has no light".into()],
+        _ => vec![format!("{lost} points lie on no surface that looks their way; their lines have no light")],
+    };
+    Ok(Some(Saved { paths: vec![path], notes }))
 }
 
 fn write_lightmaps(

@@ -11,6 +11,7 @@ use crate::gather::sky::Sky;
 use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
+use crate::points;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::report::{Report, Run, peak_rss, summary};
@@ -66,6 +67,8 @@ pub struct Job {
     pub pictures: Pictures,
     /// Which lightmaps to write; none to write none.
     pub lightmaps: Option<Wanted>,
+    /// A table of places of which to tell the light; none to tell none.
+    pub points: Option<PathBuf>,
     /// Where to write the table of elements.
     pub elements: Option<PathBuf>,
     /// Where to write for build tools which files were read.
@@ -74,14 +77,22 @@ pub struct Job {
     pub cache_limit: Option<u64>,
 }
 
+impl Job {
+    /// The files that are read beside those of the scene.
+    pub fn beside(&self) -> impl Iterator<Item = &Path> {
+        self.sky.as_ref().and_then(Sky::file).into_iter().chain(self.points.as_deref())
+    }
+}
+
 /// Run the job; everything is written when this returns.
 pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let start = Instant::now();
     let mut scene = import_scene(&job.scene)?;
-    scene.sources.extend(job.sky.as_ref().and_then(Sky::file).map(Path::to_path_buf));
+    scene.sources.extend(job.beside().map(Path::to_path_buf));
     let prepared = prepare(&scene, &job.preparation)?;
     check_writable(job, &scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
+    let places = job.points.as_deref().map(points::read).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
     let store = Store::open(&job.cache)?;
     let element_size = prepared.element_size.to_string();
@@ -99,9 +110,14 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let classic = if job.verify { classic(placed, &whole(&equation.driven), monitor) } else { None };
     with_direct(&mut outcome.irradiance, &direct.irradiance);
 
-    let light =
-        Light { equation: &equation, outcome: &outcome, classic: classic.as_ref(), atlas: atlas.as_ref() };
-    let Written { paths: outputs, notes } = write_all(job, &scene, &light, monitor)?;
+    let light = Light {
+        equation: &equation,
+        outcome: &outcome,
+        classic: classic.as_ref(),
+        atlas: atlas.as_ref(),
+        places: places.as_deref(),
+    };
+    let Written { paths: outputs, notes, point_time } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {
         depfile::write(path, &job.out.join(&scene.name).join(RESULT), &scene.sources)?;
     }
@@ -121,6 +137,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     if job.explain {
         report.explained = explained(placed, coupled);
     }
+    report.seconds.points = point_time.as_secs_f64();
     report.seconds.total = start.elapsed().as_secs_f64();
     let unverified = (job.verify && classic.is_none())
         .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned());

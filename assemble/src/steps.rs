@@ -41,6 +41,7 @@ pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Secon
         t2: longest(&own) + total(&coupling) + longest(&solve) + total(&transfer),
         t3: longest(&own).max(longest(&coupling)) + longest(&solve) + longest(&transfer),
         exchange_overhead: times.overhead.total().as_secs_f64(),
+        points: 0.0,
         total: 0.0,
     }
 }

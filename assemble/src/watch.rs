@@ -25,9 +25,9 @@ const PATIENCE: Duration = Duration::from_secs(2);
 /// Of a scene that cannot be read it is not known where its files lie: it is tried again this often.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// Call `run` now and whenever the scene in `file` or what lies in `beside` has changed, with the reason, until the monitor is stopped. Fails where
-/// folders cannot be watched.
-pub fn watch(file: &Path, beside: Option<&Path>, monitor: &Monitor, mut run: impl FnMut(&str)) -> Result<()> {
+/// Call `run` now and whenever the scene in `file` or what lies in `beside` has changed, with the reason, until the monitor is
+/// stopped. Fails where folders cannot be watched.
+pub fn watch(file: &Path, beside: &[&Path], monitor: &Monitor, mut run: impl FnMut(&str)) -> Result<()> {
     let (sender, events) = channel();
     let watcher = notify::recommended_watcher(move |_| {
         // Nobody listens any more once the watch is over.
@@ -63,15 +63,17 @@ enum State {
 }
 
 impl State {
-    fn of(file: &Path, beside: Option<&Path>) -> Self {
+    fn of(file: &Path, beside: &[&Path]) -> Self {
         match import_scene(file) {
-            Ok(scene) => Self::Files(digests(scene.sources.into_iter().chain(beside.map(Path::to_path_buf)))),
+            Ok(scene) => Self::Files(digests(
+                scene.sources.into_iter().chain(beside.iter().map(|path| path.to_path_buf())),
+            )),
             Err(error) => Self::Broken(error.to_string()),
         }
     }
 
     /// What has changed since, for a person.
-    fn change(&self, file: &Path, beside: Option<&Path>) -> Option<String> {
+    fn change(&self, file: &Path, beside: &[&Path]) -> Option<String> {
         let changed: Vec<String> = match self {
             Self::Files(old) => {
                 let new = digests(old.keys().cloned());

@@ -1,5 +1,7 @@
 //! Lights that are no surfaces: closed forms for lamps, suns and skies, what they do to the scene, and what they cost.
 
+mod points;
+
 use equilux_assemble::gather::average::Piece;
 use equilux_assemble::gather::faces::Plane;
 use equilux_assemble::gather::outside::{LightUnits, lights};

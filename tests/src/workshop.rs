@@ -86,6 +86,7 @@ impl Workshop {
             lightmaps: None,
             light_units: LightUnits::Radiometric,
             sky: None,
+            points: None,
             elements: None,
             depfile: None,
             cache_limit: None,

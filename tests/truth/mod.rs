@@ -2,6 +2,7 @@
 //! as standard errors. `scenes/<name>/truth.csv` holds one line an element; `scenes/README.md` says what its
 //! columns mean.
 
+mod points;
 mod texels;
 
 use equilux_assemble::exchange::{Goal, Method};
@@ -80,6 +81,7 @@ fn assembled(scene: &Path) -> Table {
         verify: false,
         warm: false,
         pictures: Pictures::Rounds,
+        points: None,
         elements: Some(elements.clone()),
         depfile: None,
         lightmaps: None,

@@ -4,11 +4,11 @@
 
 use super::average::{Piece, cells, centre};
 use equilux_bake::form_factor::plain::hidden_pyramid;
-use equilux_bake::form_factor::polygon::Polygon;
+use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
 use equilux_bake::outline::Plane;
 use equilux_bake::shaft::Shaft;
 use equilux_bake::world::World;
-use equilux_formats::{FaceId, LightKind, PunctualLight, Rgb};
+use equilux_formats::{Element, FaceId, LightKind, PunctualLight, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -67,6 +67,23 @@ impl Lamp {
         pieces.par_iter().map(|piece| self.over(world, piece)).collect()
     }
 
+    /// The irradiance at a point, W/m².
+    pub fn at(&self, world: &World, point: &Element) -> Rgb {
+        let to = point.centroid - self.position;
+        let cosine = -point.normal.dot(to) / to.length();
+        if cosine.is_nan() || cosine <= 0.0 {
+            return [0.0; 3];
+        }
+        let plane = Plane { normal: point.normal, point: point.centroid };
+        let mut hidden = false;
+        self.pyramids(world, &[point.centroid], plane, point.face, |pyramid| {
+            hidden |= pyramid.corners_inside(&[to]) == 1;
+        });
+        let sent = self.cone.as_ref().map_or(1.0, |cone| cone.falloff(to));
+        let share = if hidden { 0.0 } else { sent * cosine / to.length_squared() };
+        self.intensity.map(|i| i * share)
+    }
+
     fn over(&self, world: &World, piece: &Piece) -> Rgb {
         let dark = [0.0; 3];
         if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 || piece.area <= 0.0 {
@@ -76,13 +93,7 @@ impl Lamp {
         let Some(face) = piece.plane.face_at(middle) else { return dark };
         let mut lit: Vec<Polygon> = vec![piece.corners.iter().map(|&p| p - self.position).collect()];
         let plane = Plane { normal: piece.normal, point: piece.corners[0] };
-        self.occluders(world, piece, |number| {
-            if world.coplanar(face, FaceId(number)) {
-                return;
-            }
-            let Some(pyramid) = hidden_pyramid(self.position, &world.faces[number as usize], plane) else {
-                return;
-            };
+        self.pyramids(world, piece.corners, plane, face, |pyramid| {
             let mut outside = Vec::with_capacity(lit.len());
             lit.drain(..).for_each(|left| pyramid.subtract_from(left, &mut outside));
             lit = outside;
@@ -91,16 +102,26 @@ impl Lamp {
         self.intensity.map(|i| i * sent / piece.area)
     }
 
-    /// Call `visit` with the number of every face that may stand between the light and a piece.
-    fn occluders(&self, world: &World, piece: &Piece, mut visit: impl FnMut(u32)) {
-        let low = piece.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = piece.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    /// Call `visit` with what every face hides of the plane that a polygon on `own` lies in, if it may stand before the polygon.
+    fn pyramids(
+        &self,
+        world: &World,
+        polygon: &[DVec3],
+        plane: Plane,
+        own: FaceId,
+        mut visit: impl FnMut(Pyramid),
+    ) {
+        let low = polygon.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = polygon.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
         let mut shaft = Shaft::between((self.position, self.position), (low, high));
-        shaft.bound(piece.corners[0], -piece.normal);
+        shaft.bound(plane.point, -plane.normal);
         world.occluders.any(
             |low, high| shaft.misses_box(low, high),
             |occluder| {
-                occluder.faces.iter().for_each(|&face| visit(face));
+                let others = occluder.faces.iter().filter(|&&face| !world.coplanar(own, FaceId(face)));
+                others
+                    .filter_map(|&face| hidden_pyramid(self.position, &world.faces[face as usize], plane))
+                    .for_each(&mut visit);
                 false
             },
         );

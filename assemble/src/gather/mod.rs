@@ -133,6 +133,17 @@ impl Gather {
         reflected.into_iter().zip(sky).map(|(a, b)| added(a, b)).collect()
     }
 
+    /// Irradiance at points from everything, W/m².
+    pub fn irradiance(&self, points: &[Element]) -> Vec<Rgb> {
+        let mut found = self.glow(points);
+        found.iter_mut().zip(self.reflected(points)).for_each(|(sum, h)| *sum = added(*sum, h));
+        for lamp in &self.lamps {
+            let arriving = points.iter().map(|point| lamp.at(&self.world, point));
+            found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum = added(*sum, h));
+        }
+        found
+    }
+
     /// Whether anything with corners on the lit side of the plane through `point` may lie in a box.
     pub fn anything_before(&self, (low, high): (DVec3, DVec3), point: DVec3, normal: DVec3) -> bool {
         let slack = IN_PLANE * (high - low).length();

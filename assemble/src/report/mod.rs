@@ -124,6 +124,8 @@ pub struct Seconds {
     pub t3: f64,
     /// The exchange beside steps 5–8: the coarse and the Krylov space, bounds and energy accounts; wall time.
     pub exchange_overhead: f64,
+    /// The light of points that were asked for; wall time.
+    pub points: f64,
     /// Wall time of the run.
     pub total: f64,
 }
