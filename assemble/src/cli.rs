@@ -1,5 +1,6 @@
 //! The command line of `assemble`.
 
+use crate::advice::advise;
 use crate::exchange::{Goal, Method};
 use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
@@ -29,6 +30,10 @@ struct Arguments {
     /// Say in a sentence for every part and block whether it was computed, reused or left out, and why
     #[arg(long)]
     explain: bool,
+    /// Choose element size and tolerance so that light at points of surfaces, as --lightmaps and --points have it, is off by no
+    /// more than this, as a root mean square over the mean: solves with finer and finer elements until it stays
+    #[arg(long, value_name = "ERROR", value_parser = target_error, conflicts_with_all = ["element_size", "tolerance"])]
+    target_error: Option<f64>,
     /// Assemble again whenever a file of the scene changes, until Ctrl-C; a line or two a run
     #[arg(long)]
     watch: bool,
@@ -164,15 +169,17 @@ Ctrl-C ends the exchange after the current round; everything is still written. L
 
 /// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
 pub fn main() -> ExitCode {
-    let Arguments { command, assembly, explain, watch } = Arguments::parse();
+    let Arguments { command, assembly, explain, target_error, watch } = Arguments::parse();
+    let wanted = |job: Job| Wish { job: Job { explain, ..job }, target_error };
     let outcome = match command {
-        None if watch => watched(&assembly, explain).map(|()| String::new()),
+        None if watch => watched(&assembly, &wanted(assembly.job())).map(|()| String::new()),
         Some(Task::Plan(assembly)) => {
             plan(&assembly.job()).map_err(Into::into).map(|plan| said(&assembly, &plan, Plan::text))
         }
         None => {
             let monitor = progress::monitor_for_program();
-            let report = assembly.options.set_threads().and_then(|()| assemble(&assembly, explain, &monitor));
+            let report =
+                assembly.options.set_threads().and_then(|()| assemble(&wanted(assembly.job()), &monitor));
             report.map(|report| said(&assembly, &report, Report::text))
         }
     };
@@ -188,21 +195,32 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn assemble(assembly: &Assembly, explain: bool, monitor: &Arc<Monitor>) -> anyhow::Result<Report> {
+/// A job, and the error that its settings are to be chosen for.
+struct Wish {
+    job: Job,
+    target_error: Option<f64>,
+}
+
+fn assemble(wish: &Wish, monitor: &Arc<Monitor>) -> anyhow::Result<Report> {
     let progress = progress::show(monitor);
-    let report = run(&Job { explain, ..assembly.job() }, monitor);
+    let report = advised(wish, monitor);
     progress.finish();
     Ok(report?)
 }
 
+fn advised(wish: &Wish, monitor: &Monitor) -> equilux_formats::Result<Report> {
+    let Some(target) = wish.target_error else { return run(&wish.job, monitor) };
+    let (job, advice) = advise(&wish.job, target, monitor)?;
+    Ok(Report { advice: Some(advice), ..run(&job, monitor)? })
+}
+
 /// Assemble again and again. Errors in the scene are printed, and it goes on.
-fn watched(assembly: &Assembly, explain: bool) -> anyhow::Result<()> {
+fn watched(assembly: &Assembly, wish: &Wish) -> anyhow::Result<()> {
     assembly.options.set_threads()?;
     let monitor = progress::monitor_for_program();
     let mut last_notes = Vec::new();
-    let job = assembly.job();
-    watch(&job.scene, &job.beside().collect::<Vec<_>>(), &monitor, |why| {
-        match assemble(assembly, explain, &monitor) {
+    watch(&wish.job.scene, &wish.job.beside().collect::<Vec<_>>(), &monitor, |why| {
+        match assemble(wish, &monitor) {
             Ok(report) => {
                 print!("{}", said(assembly, &report, |report| short(why, report, &last_notes)));
                 last_notes = report.notes;
@@ -304,6 +322,15 @@ fn sky(text: &str) -> Result<Sky, String> {
         }
         [None] => Ok(Sky::Picture(text.into())),
         _ => Err("a sky is one number or three with commas between them, 0 or more, or a picture".into()),
+    }
+}
+
+/// `1%` or `0.01`.
+fn target_error(text: &str) -> Result<f64, String> {
+    let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |percent| (percent.trim(), 0.01));
+    match number.parse::<f64>().map(|number| number * unit) {
+        Ok(error) if error > 0.0 && error < 1.0 => Ok(error),
+        _ => Err("an error is a share of the mean light between 0 and 1, such as 1% or 0.01".into()),
     }
 }
 

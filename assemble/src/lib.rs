@@ -4,6 +4,7 @@
 //! names.
 
 mod account;
+pub mod advice;
 pub mod camera;
 pub mod canvas;
 pub mod classic;

@@ -94,7 +94,7 @@ pub fn light(
         if monitor.stopped() && !was_stopped {
             return None;
         }
-        let points: Vec<Element> = batch.iter().map(|(_, point, _)| point.clone()).collect();
+        let points: Vec<Element> = batch.iter().map(|(_, point, _)| *point).collect();
         for (&(place, _, element), irradiance) in batch.iter().zip(gather.irradiance(&points)) {
             lights[place] = Some(PointLight { element, irradiance });
         }

@@ -3,6 +3,7 @@
 //! columns mean.
 
 mod points;
+mod target;
 mod texels;
 
 use equilux_assemble::exchange::{Goal, Method};

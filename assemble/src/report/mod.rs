@@ -7,6 +7,7 @@ pub mod text;
 
 pub use summary::{Run, summary};
 
+use crate::advice::Advice;
 use crate::exchange::energy::Energy;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -58,6 +59,9 @@ pub struct Report {
     pub explained: Vec<String>,
     /// What was ignored, dropped or corrected, one sentence each.
     pub notes: Vec<String>,
+    /// How element size and tolerance were chosen, if an error was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub advice: Option<Advice>,
     /// Where pictures and files were written.
     pub outputs: Vec<String>,
 }

@@ -70,6 +70,7 @@ pub fn summary(run: &Run) -> Report {
         row_sum_defect: row_sum_defect(nodes),
         verify: run.classic.map(|classic| verification(placed, classic, outcome)),
         explained: vec![],
+        advice: None,
         notes: notes(placed, coupled, nodes),
         outputs: vec![],
     }

@@ -1,6 +1,7 @@
 //! The report for a person.
 
 use super::{ErrorReport, Report, RoundReport};
+use crate::advice::Advice;
 use std::collections::BTreeMap;
 
 impl Report {
@@ -17,6 +18,7 @@ impl Report {
             ),
             self.blocks_line(),
         ];
+        lines.extend(self.advice.iter().flat_map(Advice::lines));
         lines.extend(left_out_line(&self.blocks.coupling_left_out));
         lines.extend(self.explained.iter().cloned());
         lines.extend(self.step_lines());

@@ -1,0 +1,40 @@
+//! An error that is asked for, measured against path tracing.
+
+use super::points::off;
+use equilux_assemble::advice::advise;
+use equilux_assemble::run::{Job, Pictures, run};
+use equilux_bake::monitor::Monitor;
+use equilux_tests::workshop::Workshop;
+use std::path::Path;
+
+/// Every scene, but for `wood` below 5 %, which takes half a minute.
+#[test]
+fn an_error_that_is_asked_for_is_met() {
+    let asked = [
+        ("shadow", &[0.05, 0.02, 0.01][..]),
+        ("cornell", &[0.05, 0.01]),
+        ("corridor", &[0.05, 0.01]),
+        ("wood", &[0.05]),
+    ];
+    for (name, targets) in asked {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
+        let workshop = Workshop::new();
+        for &target in targets {
+            let job = Job {
+                scene: folder.join(name).with_extension("glb"),
+                pictures: Pictures::None,
+                points: Some(folder.join("truth.csv")),
+                ..workshop.job(equilux_bake::prepare::Division::Authored)
+            };
+            let (job, advice) = advise(&job, target, &Monitor::default()).expect("advice");
+            run(&job, &Monitor::default()).expect("a run");
+            let measured = off(&folder, &workshop.path("out").join(name).join("points.csv"));
+            assert!(advice.met, "{name}: {target} is not reached: {:?}", advice.lines());
+            assert!(
+                measured <= target,
+                "{name}: asked for {target}, measured {measured}, {:?}",
+                advice.lines()
+            );
+        }
+    }
+}
