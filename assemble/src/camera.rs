@@ -61,6 +61,15 @@ impl View {
         }
     }
 
+    /// The view from one point to another, with this vertical field of view, radians.
+    pub fn between(from: DVec3, to: DVec3, vertical_fov: f64) -> Self {
+        let back = (from - to).normalize();
+        // Straight up or down there is no right; then the top of the picture is north, −Z.
+        let right = DVec3::Y.cross(back).try_normalize().unwrap_or(DVec3::X);
+        let up = back.cross(right);
+        Self { position: from, right, up, back, vertical_fov, width: width(ASPECT), height: HEIGHT }
+    }
+
     /// The view from outside, on all `elements` (those of `index`, at least one), that shows most of their fronts.
     pub fn framing(elements: &[Element], index: &RayIndex) -> Self {
         let corners = box_corners(elements);
@@ -77,6 +86,13 @@ impl View {
     pub fn ray(&self, point: DVec2) -> DVec3 {
         let offset = (point - self.centre()) / self.focal_length();
         self.right * offset.x - self.up * offset.y - self.back
+    }
+
+    /// The scene point of an element's plane that an image point shows, metres.
+    pub fn onto(&self, point: DVec2, element: &Element) -> DVec3 {
+        let ray = self.ray(point);
+        let depth = element.normal.dot(element.centroid - self.position) / element.normal.dot(ray);
+        self.position + ray * depth
     }
 
     /// The image point of a scene point as (x, y, 1) × depth: pixels from the top left, metres. Points behind the eye

@@ -7,12 +7,14 @@ use crate::gather::sky::Sky;
 use crate::lightmap::{Units, Wanted};
 use crate::plan::{Plan, plan};
 use crate::proof::sample::ExactRows;
+use crate::render::{Eye, Shading, Shot};
 use crate::report::Report;
 use crate::run::{Job, Pictures, run};
 use crate::watch::watch;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use equilux_bake::cli::{options::SceneOptions, progress};
 use equilux_bake::monitor::Monitor;
+use glam::DVec3;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -44,6 +46,8 @@ struct Arguments {
 enum Task {
     /// Say what the same command without `plan` would compute, reuse and leave out, and why
     Plan(Assembly),
+    /// Draw the result from a camera: render.png, and how far it is from a reference: error.png
+    Render(Render),
 }
 
 /// A scene, and how to assemble it.
@@ -113,6 +117,47 @@ struct Assembly {
     depfile: Option<PathBuf>,
 }
 
+/// A picture.
+#[derive(Args)]
+struct Render {
+    #[command(flatten)]
+    assembly: Assembly,
+    /// The scene's camera of this name, or of this number from 1 [default: the first, or one that shows everything]
+    #[arg(long, value_name = "NAME|N")]
+    camera: Option<String>,
+    /// Look from this point, metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, requires = "to", conflicts_with = "camera")]
+    from: Option<DVec3>,
+    /// Look at this point, metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true, requires = "from")]
+    to: Option<DVec3>,
+    /// Vertical field of view of --from, degrees
+    #[arg(long, value_name = "DEGREES", default_value = "45", value_parser = field_of_view)]
+    fov: f64,
+    /// Width and height, pixels [default: 720 high, and as wide as the camera says]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<[u32; 2]>,
+    /// How light is drawn
+    #[arg(long, value_name = "HOW", default_value = "smooth")]
+    shading: Shaded,
+    /// So many stops brighter than what suits the scene, or darker
+    #[arg(long, value_name = "STOPS", default_value = "0", value_parser = stops, allow_hyphen_values = true)]
+    exposure: f64,
+    /// Also show in false colours how far irradiance is from that of this table: truth.csv of a scene, or what --elements or
+    /// --points wrote
+    #[arg(long, value_name = "FILE.csv")]
+    against: Option<PathBuf>,
+}
+
+/// The shading's name on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Shaded {
+    /// Each element in one colour
+    Flat,
+    /// Interpolated between elements that see each other
+    Smooth,
+}
+
 /// The exchange's name on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
 enum Exchange {
@@ -162,6 +207,8 @@ Examples:
   assemble scenes/shadow/shadow.glb                    pictures of its rounds in out/shadow/
   assemble scenes/house/house.gltf --element-size 0.3  a level from part files
   assemble scenes/wood/wood.glb --bisect 8 --verify    parts by planes, compared with the whole
+  assemble scenes/cornell/cornell.glb --target-error 1%  settings that are as exact as that
+  assemble render scenes/house/house.gltf              a picture from its camera
   assemble plan scenes/house/house.gltf                what would be computed, and why
   assemble scenes/house/house.gltf --lightmaps         with lightmaps for game engines
   assemble scenes/house/house.gltf --watch             again whenever one of its files is saved
@@ -175,6 +222,12 @@ pub fn main() -> ExitCode {
         None if watch => watched(&assembly, &wanted(assembly.job())).map(|()| String::new()),
         Some(Task::Plan(assembly)) => {
             plan(&assembly.job()).map_err(Into::into).map(|plan| said(&assembly, &plan, Plan::text))
+        }
+        Some(Task::Render(render)) => {
+            let monitor = progress::monitor_for_program();
+            let wish = Wish { job: render.job(), target_error: None };
+            let report = render.assembly.options.set_threads().and_then(|()| assemble(&wish, &monitor));
+            report.map(|report| said(&render.assembly, &report, Report::outputs_text))
         }
         None => {
             let monitor = progress::monitor_for_program();
@@ -256,6 +309,23 @@ fn said<T: Serialize>(assembly: &Assembly, what: &T, text: impl Fn(&T) -> String
     }
 }
 
+impl Render {
+    fn job(&self) -> Job {
+        let eye = match (&self.camera, self.from, self.to) {
+            (Some(name), ..) => Eye::Camera(name.clone()),
+            (None, Some(from), Some(to)) => Eye::Points { from, to, field_of_view: self.fov.to_radians() },
+            _ => Eye::Scene,
+        };
+        let shading = match self.shading {
+            Shaded::Flat => Shading::Flat,
+            Shaded::Smooth => Shading::Smooth,
+        };
+        let (size, stops, against) = (self.size, self.exposure, self.against.clone());
+        let shot = Some(Shot { eye, size, shading, stops, against });
+        Job { shot, pictures: Pictures::None, ..self.assembly.job() }
+    }
+}
+
 impl Assembly {
     fn job(&self) -> Job {
         let default_error = if self.verify { 0.0 } else { 1e-6 };
@@ -297,6 +367,7 @@ impl Assembly {
                     LightmapUnits::Bevy => Units::Bevy,
                 },
             }),
+            shot: None,
             points: self.points.clone(),
             elements: self.elements.clone(),
             depfile: self.depfile.clone(),
@@ -331,6 +402,38 @@ fn target_error(text: &str) -> Result<f64, String> {
     match number.parse::<f64>().map(|number| number * unit) {
         Ok(error) if error > 0.0 && error < 1.0 => Ok(error),
         _ => Err("an error is a share of the mean light between 0 and 1, such as 1% or 0.01".into()),
+    }
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) if [x, y, z].iter().all(|v| v.is_finite()) => Ok(DVec3::new(x, y, z)),
+        _ => Err("a point is three numbers with commas between them, metres, such as 1,1.6,-2".into()),
+    }
+}
+
+fn size(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').map(|(width, height)| [width.parse().ok(), height.parse().ok()]);
+    match sides {
+        Some([Some(width), Some(height)]) if [width, height].iter().all(|side| (1..=8192).contains(side)) => {
+            Ok([width, height])
+        }
+        _ => Err("a size is two numbers of pixels from 1 to 8192, such as 1280x720".into()),
+    }
+}
+
+fn field_of_view(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(degrees) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
+        _ => Err("a field of view is an angle between 0 and 180 degrees".into()),
+    }
+}
+
+fn stops(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(stops) if stops.abs() <= 100.0 => Ok(stops),
+        _ => Err("an exposure is a number of stops, such as 1 for twice as bright".into()),
     }
 }
 

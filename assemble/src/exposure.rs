@@ -46,7 +46,7 @@ fn bright(mut lights: Vec<f64>) -> Option<f64> {
 }
 
 /// Luminance of linear RGB, ITU-R BT.709.
-fn luminance([r, g, b]: Rgb) -> f64 {
+pub fn luminance([r, g, b]: Rgb) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 

@@ -29,6 +29,7 @@ pub mod placed;
 pub mod plan;
 pub mod points;
 pub mod proof;
+pub mod render;
 pub mod report;
 pub mod run;
 pub mod scene_light;

@@ -12,6 +12,7 @@ use crate::lightmap::light::TexelLight;
 use crate::lightmap::{self, Lightmap, Saved};
 use crate::picture::{shade, wireframe, write_png};
 use crate::points::{self, Place};
+use crate::render::{self, Reference};
 use crate::run::{Job, Pictures};
 use crate::scene_light::SceneLight;
 use crate::{elements_csv, gltf_export};
@@ -37,6 +38,8 @@ pub struct Light<'a> {
     pub atlas: Option<&'a Atlas>,
     /// The places of which to tell the light, if asked for.
     pub places: Option<&'a [Place]>,
+    /// What to compare a picture with, if asked for.
+    pub against: Option<&'a Reference>,
 }
 
 /// What was written.
@@ -101,6 +104,12 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     let points = write_points(&folder, light, monitor)?;
     let point_time = start.elapsed();
     let mut notes = Vec::new();
+    if let Some(shot) = &job.shot {
+        let lit = (light.equation, light.outcome);
+        let drawn = render::draw(shot, light.against, &scene.cameras, lit, &folder, &job.scene)?;
+        written.extend(drawn.paths);
+        notes.extend(drawn.notes);
+    }
     for saved in [lightmaps, points].into_iter().flatten() {
         written.extend(saved.paths);
         notes.extend(saved.notes);

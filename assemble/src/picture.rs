@@ -11,7 +11,7 @@ use std::io;
 use std::path::Path;
 
 /// Behind everything, linear RGB: a dark grey that neither lit nor unlit surfaces have by chance.
-const BACKGROUND: Rgb = [0.02; 3];
+pub const BACKGROUND: Rgb = [0.02; 3];
 /// Wireframe: paper, surfaces and lines, linear RGB.
 const PAPER: Rgb = [1.0; 3];
 const SURFACE: Rgb = [0.85; 3];

@@ -14,6 +14,7 @@ use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
 use crate::points;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
+use crate::render::{Eye, Reference, Shot, camera};
 use crate::report::{Report, Run, peak_rss, summary};
 use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
@@ -65,6 +66,8 @@ pub struct Job {
     pub sky: Option<Sky>,
     /// Which rounds get pictures.
     pub pictures: Pictures,
+    /// A picture to draw besides; none for none.
+    pub shot: Option<Shot>,
     /// Which lightmaps to write; none to write none.
     pub lightmaps: Option<Wanted>,
     /// A table of places of which to tell the light; none to tell none.
@@ -80,7 +83,9 @@ pub struct Job {
 impl Job {
     /// The files that are read beside those of the scene.
     pub fn beside(&self) -> impl Iterator<Item = &Path> {
-        self.sky.as_ref().and_then(Sky::file).into_iter().chain(self.points.as_deref())
+        let sky = self.sky.as_ref().and_then(Sky::file);
+        let against = self.shot.as_ref().and_then(|shot| shot.against.as_deref());
+        [sky, self.points.as_deref(), against].into_iter().flatten()
     }
 }
 
@@ -92,6 +97,11 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let prepared = prepare(&scene, &job.preparation)?;
     check_writable(job, &scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
+    let against = job.shot.as_ref().and_then(|shot| shot.against.as_deref());
+    let against = against.map(Reference::read).transpose()?;
+    if let Some(Eye::Camera(name)) = job.shot.as_ref().map(|shot| &shot.eye) {
+        camera(name, &scene.cameras, &job.scene)?;
+    }
     let places = job.points.as_deref().map(points::read).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
     let store = Store::open(&job.cache)?;
@@ -116,6 +126,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         classic: classic.as_ref(),
         atlas: atlas.as_ref(),
         places: places.as_deref(),
+        against: against.as_ref(),
     };
     let Written { paths: outputs, notes, point_time } = write_all(job, &scene, &light, monitor)?;
     if let Some(path) = &job.depfile {

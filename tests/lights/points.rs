@@ -60,8 +60,8 @@ fn tables_without_places_are_refused_by_name_before_any_work() {
     let workshop = Workshop::with(&square());
     for (text, word) in [
         ("x,y,z\n1,2,3\n", "no column `nx`"),
-        ("x,y,z,nx,ny,nz\n1,2,3,0,1,0\n1,2,three,0,1,0\n", "line 3 holds no place"),
-        ("x,y,z,nx,ny,nz\n1,2,3,0,0,0\n", "line 2 holds no place"),
+        ("x,y,z,nx,ny,nz\n1,2,3,0,1,0\n1,2,three,0,1,0\n", "line 3 holds what is no number"),
+        ("x,y,z,nx,ny,nz\n1,2,3,0,0,0\n", "line 2 has no normal"),
         ("x,y,z,nx,ny,nz\n1,2,3\n", "cannot be read"),
     ] {
         fs::write(workshop.path("points.csv"), text).unwrap();

@@ -87,6 +87,7 @@ impl Workshop {
             light_units: LightUnits::Radiometric,
             sky: None,
             points: None,
+            shot: None,
             elements: None,
             depfile: None,
             cache_limit: None,

@@ -83,6 +83,7 @@ fn assembled(scene: &Path) -> Table {
         warm: false,
         pictures: Pictures::Rounds,
         points: None,
+        shot: None,
         elements: Some(elements.clone()),
         depfile: None,
         lightmaps: None,

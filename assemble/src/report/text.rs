@@ -5,6 +5,13 @@ use crate::advice::Advice;
 use std::collections::BTreeMap;
 
 impl Report {
+    /// What was written and what is to be said of it, for a person.
+    pub fn outputs_text(&self) -> String {
+        let notes = self.notes.iter().map(|note| format!("note: {note}"));
+        let wrote = self.outputs.iter().map(|path| format!("wrote {path}"));
+        notes.chain(wrote).map(|line| line + "\n").collect()
+    }
+
     /// The report for a person, a few lines and two tables.
     pub fn text(&self) -> String {
         let mut lines = vec![

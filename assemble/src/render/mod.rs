@@ -1,0 +1,150 @@
+//! A picture that somebody asks for: from this camera, with flat or smooth light, and how far it is from a reference. In goes a
+//! [`Shot`] and the light of a scene; out come PNG files and what is to be said of them.
+
+mod difference;
+mod interpolation;
+mod smooth;
+
+use crate::camera::View;
+use crate::canvas::Canvas;
+use crate::equation::Equation;
+use crate::exchange::Outcome;
+use crate::exposure::Exposure;
+use crate::picture::{BACKGROUND, shade, write_png};
+use difference::Difference;
+pub use difference::Reference;
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_formats::{Camera, Error, Result};
+use glam::DVec3;
+use interpolation::Interpolated;
+use smooth::corner_irradiance;
+use std::path::{Path, PathBuf};
+
+/// What to draw.
+#[derive(Debug, Clone)]
+pub struct Shot {
+    /// From where.
+    pub eye: Eye,
+    /// Width and height, pixels; none for what suits the camera.
+    pub size: Option<[u32; 2]>,
+    /// How light is drawn.
+    pub shading: Shading,
+    /// Stops above what suits the scene: each makes the picture twice as bright.
+    pub stops: f64,
+    /// A table of light, to show in false colours how far ours is from it.
+    pub against: Option<PathBuf>,
+}
+
+/// From where a picture is taken.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Eye {
+    /// The scene's first camera, or, without any, one that has all of it in the picture.
+    Scene,
+    /// The scene's camera of this name, or of this number from 1.
+    Camera(String),
+    /// From a point to another, metres, with a vertical field of view, radians.
+    Points {
+        /// Where the eye is.
+        from: DVec3,
+        /// What is in the middle of the picture.
+        to: DVec3,
+        /// Vertical field of view, radians.
+        field_of_view: f64,
+    },
+}
+
+/// How light is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Shading {
+    /// Each element in one colour, as it was computed.
+    Flat,
+    /// Irradiance interpolated between elements that see each other.
+    Smooth,
+}
+
+/// What was drawn.
+pub struct Drawn {
+    /// The pictures.
+    pub paths: Vec<PathBuf>,
+    /// What a person should know of them.
+    pub notes: Vec<String>,
+}
+
+/// Draw a shot into `folder`. `against` is what `shot` names, read.
+pub fn draw(
+    shot: &Shot,
+    against: Option<&Reference>,
+    cameras: &[Camera],
+    light: (&Equation, &Outcome),
+    folder: &Path,
+    file: &Path,
+) -> Result<Drawn> {
+    let (equation, outcome) = light;
+    let elements = &equation.placed.world.elements;
+    let index = RayIndex::new(elements);
+    let view = view(shot, cameras, file, || View::framing(elements, &index))?;
+    let canvas = Canvas::trace(view, &index);
+    let emission = &equation.optics.emission;
+    let Exposure(suits) = Exposure::choose(|| canvas.elements(), &outcome.radiosity, emission);
+    let exposure = Exposure(suits * shot.stops.exp2());
+    let corners = match shot.shading {
+        Shading::Flat => None,
+        Shading::Smooth => Some(corner_irradiance(elements, &index, &outcome.irradiance)),
+    };
+    let light = Interpolated { elements, corners: corners.as_deref(), flat: &outcome.irradiance };
+    let picture = match shot.shading {
+        Shading::Flat => shade(&canvas, &outcome.radiosity, exposure),
+        Shading::Smooth => canvas.paint(BACKGROUND, |point, element| {
+            let h = light.at(element, canvas.view().onto(point, &elements[element]));
+            let (e, rho) = (emission[element], equation.optics.reflectance[element]);
+            exposure.shown([0, 1, 2].map(|c| e[c] + rho[c] * h[c]))
+        }),
+    };
+    let path = folder.join("render.png");
+    write_png(&path, &picture)?;
+    let mut drawn = Drawn {
+        paths: vec![path],
+        notes: vec![format!(
+            "render.png shows radiance times {:.4} m² sr/W, {:+.1} stops from what suits the scene, in sRGB; above 0.8 it bends \
+             towards white",
+            exposure.0, shot.stops
+        )],
+    };
+    if let Some(reference) = against {
+        let difference = Difference::new(reference, elements, &light);
+        let path = folder.join("error.png");
+        write_png(&path, &difference.picture(&canvas))?;
+        drawn.paths.push(path);
+        drawn.notes.push(difference.legend());
+    }
+    Ok(drawn)
+}
+
+/// Fail where there is no such camera.
+fn view(shot: &Shot, cameras: &[Camera], file: &Path, framing: impl FnOnce() -> View) -> Result<View> {
+    let view = match &shot.eye {
+        Eye::Scene => cameras.first().map_or_else(framing, View::of_camera),
+        Eye::Camera(name) => View::of_camera(camera(name, cameras, file)?),
+        Eye::Points { from, to, field_of_view } => View::between(*from, *to, *field_of_view),
+    };
+    Ok(match shot.size {
+        Some([width, height]) => View { width, height, ..view },
+        None => view,
+    })
+}
+
+/// The camera of a name, or of a number from 1.
+pub fn camera<'a>(name: &str, cameras: &'a [Camera], file: &Path) -> Result<&'a Camera> {
+    let by_name = cameras.iter().find(|camera| camera.name == name);
+    let by_number = || name.parse::<usize>().ok().and_then(|number| cameras.get(number.checked_sub(1)?));
+    by_name.or_else(by_number).ok_or_else(|| {
+        let names: Vec<String> = cameras.iter().map(|camera| format!("`{}`", camera.name)).collect();
+        let found = if names.is_empty() { "no cameras at all".into() } else { names.join(", ") };
+        Error::new(
+            file,
+            format!("has no camera `{name}`, but {found}"),
+            "the name or number of a camera of the scene",
+            "choose one of them, or say where to look from with --from and --to",
+        )
+    })
+}
