@@ -135,7 +135,7 @@ pub fn light(
 }
 
 /// The nearest point on an element that looks the place's way, and the element, for each place that has one.
-fn located(elements: &[Element], places: &[Place]) -> Vec<Option<(Element, usize)>> {
+pub fn located(elements: &[Element], places: &[Place]) -> Vec<Option<(Element, usize)>> {
     let index = RayIndex::new(elements);
     let corners = || elements.iter().flat_map(|element| element.corners.as_slice());
     let low = corners().copied().fold(DVec3::INFINITY, DVec3::min);

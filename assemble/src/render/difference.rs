@@ -5,8 +5,9 @@ use super::interpolation::Interpolated;
 use crate::canvas::Canvas;
 use crate::exposure::luminance;
 use crate::picture::BACKGROUND;
-use crate::points::{Place, read_light};
+use crate::points::{Place, located, read_light};
 use equilux_formats::{Element, Result, Rgb};
+use glam::DVec3;
 use image::RgbImage;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
@@ -17,73 +18,60 @@ const DARKER: Rgb = [0.02, 0.13, 0.52];
 const ALIKE: Rgb = [0.9, 0.9, 0.9];
 const BRIGHTER: Rgb = [0.64, 0.05, 0.01];
 
-/// The colours are full where this share of the area is further off.
+/// The colours are full where this share of the places is further off.
 const FULL: f64 = 0.05;
 
 /// Light at places, to compare with.
 pub struct Reference {
-    /// By place and, scaled by the size of the scene, by normal: who looks another way is far away.
-    tree: RTree<GeomWithData<[f64; 6], f64>>,
-    size: f64,
-    /// Luminance of the mean irradiance, W/m².
-    mean: f64,
+    places: Vec<Place>,
+    /// W/m².
+    irradiance: Vec<Rgb>,
 }
 
 impl Reference {
     /// Read a table with the columns that [`crate::points::read`] asks for, and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or `H_r`, `H_g`,
     /// `H_b`, W/m². Fails if it cannot be read or has no such columns.
     pub fn read(file: &Path) -> Result<Self> {
-        let light = read_light(file)?;
-        let size = light.iter().map(|(place, _)| place.point.abs().max_element()).fold(0.0, f64::max);
-        let mean = light.iter().map(|(_, h)| luminance(*h)).sum::<f64>() / light.len() as f64;
-        let rows = light.iter().map(|(place, h)| GeomWithData::new(key(place, size), luminance(*h)));
-        Ok(Self { tree: RTree::bulk_load(rows.collect()), size, mean })
-    }
-
-    /// The irradiance nearest to a place, as luminance.
-    fn at(&self, place: &Place) -> f64 {
-        self.tree.nearest_neighbor(&key(place, self.size)).map_or(0.0, |row| row.data)
+        let (places, irradiance) = read_light(file)?.into_iter().unzip();
+        Ok(Self { places, irradiance })
     }
 }
 
-fn key(place: &Place, size: f64) -> [f64; 6] {
-    let (p, n) = (place.point, place.normal * size);
-    [p.x, p.y, p.z, n.x, n.y, n.z]
-}
-
-/// Our light beside a reference.
+/// Our light beside a reference's, at its places.
 pub struct Difference<'a> {
-    reference: &'a Reference,
     elements: &'a [Element],
-    light: &'a Interpolated<'a>,
-    /// Where the colours are full, of the reference's mean.
+    /// By place and, scaled by the size of the scene, by normal, so that who looks another way is far away: luminance of our
+    /// irradiance minus the reference's, over its mean.
+    off: RTree<GeomWithData<[f64; 6], f64>>,
+    /// Largest coordinate of the places, metres.
+    size: f64,
+    /// Where the colours are full.
     full: f64,
 }
 
 impl<'a> Difference<'a> {
     /// Compare the light of elements.
-    pub fn new(reference: &'a Reference, elements: &'a [Element], light: &'a Interpolated<'a>) -> Self {
-        let mut difference = Self { reference, elements, light, full: 1.0 };
-        let mut off: Vec<(f64, f64)> = elements
-            .iter()
-            .enumerate()
-            .map(|(number, element)| (difference.at(number, element.centroid).abs(), element.area))
-            .collect();
-        off.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let whole: f64 = off.iter().map(|(_, area)| area).sum();
-        let mut passed = 0.0;
-        let reached = off.iter().find(|(_, area)| {
-            passed += area;
-            passed >= FULL * whole
-        });
-        difference.full = round_up(reached.map_or(0.0, |(off, _)| *off));
-        difference
+    pub fn new(reference: &Reference, elements: &'a [Element], light: &Interpolated) -> Self {
+        let size = reference.places.iter().map(|p| p.point.abs().max_element()).fold(0.0, f64::max);
+        let theirs: Vec<f64> = reference.irradiance.iter().copied().map(luminance).collect();
+        let mean = theirs.iter().sum::<f64>() / theirs.len() as f64;
+        let ours = located(elements, &reference.places);
+        let off = |((place, theirs), ours): ((&Place, f64), Option<(Element, usize)>)| {
+            let (at, element) = ours?;
+            let ours = luminance(light.at(element, at.centroid));
+            Some(GeomWithData::new(key(place, size), (ours - theirs) / mean))
+        };
+        let off: Vec<_> = reference.places.iter().zip(theirs).zip(ours).filter_map(off).collect();
+        let mut sizes: Vec<f64> = off.iter().map(|row| row.data.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let rank = (sizes.len() as f64 * (1.0 - FULL)) as usize;
+        let full = round_up(sizes.get(rank).copied().unwrap_or(0.0));
+        Self { elements, off: RTree::bulk_load(off), size, full }
     }
 
-    /// Ours minus the reference's at a point of an element, of the reference's mean.
-    fn at(&self, element: usize, point: glam::DVec3) -> f64 {
+    fn at(&self, element: usize, point: DVec3) -> f64 {
         let place = Place { point, normal: self.elements[element].normal };
-        (luminance(self.light.at(element, point)) - self.reference.at(&place)) / self.reference.mean
+        self.off.nearest_neighbor(&key(&place, self.size)).map_or(0.0, |row| row.data)
     }
 
     /// What the canvas shows, in false colours.
@@ -99,11 +87,16 @@ impl<'a> Difference<'a> {
     /// What the colours mean.
     pub fn legend(&self) -> String {
         format!(
-            "error.png shows our irradiance minus the reference's: white for none, deep blue for {0} % of the mean darker, deep red for \
+            "error.png shows at each place of the reference our irradiance minus its: white for none, deep blue for {0} % of the mean darker, deep red for \
              {0} % brighter",
             100.0 * self.full
         )
     }
+}
+
+fn key(place: &Place, size: f64) -> [f64; 6] {
+    let (p, n) = (place.point, place.normal * size);
+    [p.x, p.y, p.z, n.x, n.y, n.z]
 }
 
 /// The next number of the form 1, 2 or 5 times a power of ten.

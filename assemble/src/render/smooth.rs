@@ -2,7 +2,8 @@
 //! comes one value a corner.
 //!
 //! A corner takes the mean of those around it that lie in about the same plane and whose middles see each other: neither
-//! shines light through a wall that stands on a floor, nor what lies dark below a crate into the light beside it.
+//! shines light through a wall that stands on a floor, nor what lies dark below a crate into the light beside it. An element
+//! whose middle lies below a crate is dark all over; where it looks out it takes the light around.
 
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Element, Rgb};
@@ -27,16 +28,28 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
     let tree = RTree::bulk_load(corners.collect());
     let of_element = |(number, element): (usize, &Element)| {
         let size = element.area.sqrt();
+        let is_buried = |number: usize| irradiance[number] == [0.0; 3];
         let joins = |other: usize| {
-            let (from, to) = (lifted(element), lifted(&elements[other]));
-            other == number || elements[other].normal.dot(element.normal) >= SMOOTH && index.sees(from, to)
+            let sees = || is_buried(number) || index.sees(lifted(element), lifted(&elements[other]));
+            let is_alike = || elements[other].normal.dot(element.normal) >= SMOOTH;
+            !is_buried(other) && (other == number || is_alike() && sees())
         };
-        let mut values = [[0.0; 3]; 4];
-        for (value, corner) in values.iter_mut().zip(element.corners.as_slice()) {
-            let around = tree.locate_within_distance(corner.to_array(), (SAME * size).powi(2));
-            *value = mean(around.map(|found| found.data).filter(|&other| joins(other)), irradiance);
-        }
-        values
+        let known: Vec<Option<Rgb>> = element
+            .corners
+            .as_slice()
+            .iter()
+            .map(|corner| {
+                let around = tree.locate_within_distance(corner.to_array(), (SAME * size).powi(2));
+                mean(
+                    around
+                        .map(|found| found.data)
+                        .filter(|&other| joins(other))
+                        .map(|other| irradiance[other]),
+                )
+            })
+            .collect();
+        let elsewhere = mean(known.iter().copied().flatten()).unwrap_or_default();
+        std::array::from_fn(|corner| known.get(corner).copied().flatten().unwrap_or(elsewhere))
     };
     elements.par_iter().enumerate().map(of_element).collect()
 }
@@ -45,11 +58,12 @@ fn lifted(element: &Element) -> glam::DVec3 {
     element.centroid + element.normal * (ABOVE * element.area.sqrt())
 }
 
-fn mean(of: impl Iterator<Item = usize>, irradiance: &[Rgb]) -> Rgb {
+/// The mean of some values, if there are any.
+fn mean(values: impl Iterator<Item = Rgb>) -> Option<Rgb> {
     let (mut sum, mut count) = ([0.0; 3], 0.0);
-    for element in of {
-        (0..3).for_each(|c| sum[c] += irradiance[element][c]);
+    for value in values {
+        (0..3).for_each(|c| sum[c] += value[c]);
         count += 1.0;
     }
-    sum.map(|sum| sum / count)
+    (count > 0.0).then(|| sum.map(|sum| sum / count))
 }
