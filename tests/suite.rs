@@ -9,5 +9,6 @@ mod lights;
 mod parts;
 mod physics;
 mod stiff;
+mod sweep;
 mod textures;
 mod truth;

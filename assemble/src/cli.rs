@@ -1,6 +1,7 @@
 //! The command line of `assemble`.
 
 use crate::advice::advise;
+use crate::baseline;
 use crate::exchange::{Goal, Method};
 use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
@@ -10,6 +11,7 @@ use crate::proof::sample::ExactRows;
 use crate::render::{Eye, Shading, Shot};
 use crate::report::Report;
 use crate::run::{Job, Pictures, run};
+use crate::sweep;
 use crate::watch::watch;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use equilux_bake::cli::{options::SceneOptions, progress};
@@ -48,6 +50,10 @@ enum Task {
     Plan(Assembly),
     /// Draw the result from a camera: render.png, and how far it is from a reference: error.png
     Render(Render),
+    /// Try settings for a while and report error against run time
+    Sweep(sweep::cli::Arguments),
+    /// Solve the scene with one matrix of all pairs of elements, or by progressive refinement: what to compare with
+    Classic(baseline::cli::Arguments),
 }
 
 /// A scene, and how to assemble it.
@@ -184,7 +190,7 @@ enum Drawn {
 
 /// The units of lights on the command line.
 #[derive(Debug, Clone, Copy, ValueEnum)]
-enum Intensities {
+pub(crate) enum Intensities {
     /// W/sr and W/m², number for number what the file calls candela and lux
     Radiometric,
     /// Candela and lux of light of 683 lm/W: what Blender writes by default
@@ -211,6 +217,7 @@ Examples:
   assemble render scenes/house/house.gltf              a picture from its camera
   assemble plan scenes/house/house.gltf                what would be computed, and why
   assemble scenes/house/house.gltf --lightmaps         with lightmaps for game engines
+  assemble sweep scenes/house/house.gltf               error against run time, in out/house/sweep/
   assemble scenes/house/house.gltf --watch             again whenever one of its files is saved
 Ctrl-C ends the exchange after the current round; everything is still written. Later it ends lightmaps, and\nonly they are not. A second one ends the program at once.";
 
@@ -220,20 +227,24 @@ pub fn main() -> ExitCode {
     let wanted = |job: Job| Wish { job: Job { explain, ..job }, target_error };
     let outcome = match command {
         None if watch => watched(&assembly, &wanted(assembly.job())).map(|()| String::new()),
-        Some(Task::Plan(assembly)) => {
-            plan(&assembly.job()).map_err(Into::into).map(|plan| said(&assembly, &plan, Plan::text))
-        }
+        Some(Task::Plan(assembly)) => plan(&assembly.job())
+            .map_err(Into::into)
+            .map(|plan| said(assembly.options.json, &plan, Plan::text)),
         Some(Task::Render(render)) => {
             let monitor = progress::monitor_for_program();
             let wish = Wish { job: render.job(), target_error: None };
             let report = render.assembly.options.set_threads().and_then(|()| assemble(&wish, &monitor));
-            report.map(|report| said(&render.assembly, &report, Report::outputs_text))
+            report.map(|report| said(render.assembly.options.json, &report, Report::outputs_text))
         }
+        Some(Task::Sweep(arguments)) => shown(|monitor| arguments.run(monitor).map_err(Into::into))
+            .map(|summary| said(arguments.json, &summary, |summary| arguments.text(summary))),
+        Some(Task::Classic(arguments)) => shown(|monitor| arguments.run(monitor))
+            .map(|report| said(arguments.json, &report, baseline::Report::text)),
         None => {
             let monitor = progress::monitor_for_program();
             let report =
                 assembly.options.set_threads().and_then(|()| assemble(&wanted(assembly.job()), &monitor));
-            report.map(|report| said(&assembly, &report, Report::text))
+            report.map(|report| said(assembly.options.json, &report, Report::text))
         }
     };
     match outcome {
@@ -246,6 +257,15 @@ pub fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Do something with progress shown, until Ctrl-C.
+fn shown<T>(work: impl FnOnce(&Monitor) -> anyhow::Result<T>) -> anyhow::Result<T> {
+    let monitor = progress::monitor_for_program();
+    let progress = progress::show(&monitor);
+    let done = work(&monitor);
+    progress.finish();
+    done
 }
 
 /// A job, and the error that its settings are to be chosen for.
@@ -275,7 +295,7 @@ fn watched(assembly: &Assembly, wish: &Wish) -> anyhow::Result<()> {
     watch(&wish.job.scene, &wish.job.beside().collect::<Vec<_>>(), &monitor, |why| {
         match assemble(wish, &monitor) {
             Ok(report) => {
-                print!("{}", said(assembly, &report, |report| short(why, report, &last_notes)));
+                print!("{}", said(assembly.options.json, &report, |report| short(why, report, &last_notes)));
                 last_notes = report.notes;
             }
             Err(error) => eprintln!("error: {error:#}"),
@@ -301,11 +321,17 @@ fn short(why: &str, report: &Report, last_notes: &[String]) -> String {
 }
 
 /// What goes to stdout: for machines if they asked, else for people.
-fn said<T: Serialize>(assembly: &Assembly, what: &T, text: impl Fn(&T) -> String) -> String {
-    if assembly.options.json {
-        serde_json::to_string(what).expect("a report is plain data") + "\n"
-    } else {
-        text(what)
+fn said<T: Serialize>(json: bool, what: &T, text: impl Fn(&T) -> String) -> String {
+    if json { serde_json::to_string(what).expect("a report is plain data") + "\n" } else { text(what) }
+}
+
+impl From<Intensities> for LightUnits {
+    fn from(units: Intensities) -> Self {
+        match units {
+            Intensities::Radiometric => Self::Radiometric,
+            Intensities::Photometric => Self::Photometric,
+            Intensities::BlenderRaw => Self::BlenderRaw,
+        }
     }
 }
 
@@ -353,11 +379,7 @@ impl Assembly {
                 Drawn::Last => Pictures::Last,
                 Drawn::None => Pictures::None,
             },
-            light_units: match self.light_units {
-                Intensities::Radiometric => LightUnits::Radiometric,
-                Intensities::Photometric => LightUnits::Photometric,
-                Intensities::BlenderRaw => LightUnits::BlenderRaw,
-            },
+            light_units: self.light_units.into(),
             sky: self.sky.clone(),
             lightmaps: self.lightmaps.then_some(Wanted {
                 texel_size: self.texel_size,
@@ -384,7 +406,7 @@ fn exact_rows(text: &str) -> Result<ExactRows, String> {
     }
 }
 
-fn sky(text: &str) -> Result<Sky, String> {
+pub(crate) fn sky(text: &str) -> Result<Sky, String> {
     let numbers: Vec<Option<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers[..] {
         [Some(all)] if all >= 0.0 && all.is_finite() => Ok(Sky::Uniform([all; 3])),

@@ -5,6 +5,8 @@
 
 mod account;
 pub mod advice;
+#[cfg(feature = "cli")]
+pub mod baseline;
 pub mod camera;
 pub mod canvas;
 pub mod classic;
@@ -34,6 +36,8 @@ pub mod report;
 pub mod run;
 pub mod scene_light;
 mod steps;
+#[cfg(feature = "cli")]
+pub mod sweep;
 mod warm;
 #[cfg(feature = "cli")]
 pub mod watch;

@@ -73,7 +73,8 @@ pub fn check_writable(job: &Job, scene: &Scene) -> Result<()> {
     })
 }
 
-fn unusable(folder: &Path, error: &std::io::Error) -> Error {
+/// The error of a folder for outputs that cannot be used.
+pub fn unusable(folder: &Path, error: &std::io::Error) -> Error {
     Error::new(
         folder,
         format!("cannot be used for the outputs ({error})"),

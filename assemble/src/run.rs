@@ -15,7 +15,7 @@ use crate::points;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::render::{Eye, Reference, Shot, camera};
-use crate::report::{Report, Run, peak_rss, summary};
+use crate::report::{Report, Run, cpu_seconds, peak_rss, summary};
 use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
@@ -115,6 +115,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     if job.warm {
         keep(placed, &store, &job.scene, &outcome.radiosity)?;
     }
+    let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let proof = prove(placed, &nodes, &outcome, job.exact_rows, monitor);
     let peak = peak_rss();
     let classic = if job.verify { classic(placed, &whole(&equation.driven), monitor) } else { None };
@@ -149,6 +150,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         report.explained = explained(placed, coupled);
     }
     report.seconds.points = point_time.as_secs_f64();
+    (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let unverified = (job.verify && classic.is_none())
         .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned());

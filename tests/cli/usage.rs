@@ -39,6 +39,10 @@ fn a_wrong_command_line_is_exit_code_2_and_touches_nothing() {
     refused(&workshop, "assemble", &["scene.glb", "scene.glb"]);
     refused(&workshop, "assemble", &["plan"]);
     refused(&workshop, "assemble", &["plan", "scene.glb", "--tolerance", "2"]);
+    refused(&workshop, "assemble", &["sweep"]);
+    refused(&workshop, "assemble", &["sweep", "scene.glb", "--budget", "0"]);
+    refused(&workshop, "assemble", &["classic", "scene.glb", "--rays", "0"]);
+    refused(&workshop, "assemble", &["classic", "scene.glb", "--unshot", "1"]);
     refused(&workshop, "assemble", &["scene.glb", "--exchange", "gossip"]);
     refused(&workshop, "assemble", &["scene.glb", "--error", "-1"]);
     refused(&workshop, "assemble", &["scene.glb", "--rounds", "few"]);

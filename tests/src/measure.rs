@@ -1,15 +1,15 @@
 //! A level as one world: its rows at a resolution, what they cost, and the light they give. For measurements.
 
 use crate::levels::furnished;
+use equilux_assemble::baseline::rays::row;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::equilibrium::{added, apply, scaled};
-use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, Request, Resolution, block};
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
-use equilux_formats::{Element, Geometry, Optics, Part, Rgb, Rows};
-use glam::{DAffine3, DVec3};
+use equilux_formats::{Geometry, Optics, Part, Rgb, Rows};
+use glam::DAffine3;
 use std::time::{Duration, Instant};
 
 /// A furnished level, every room a part.
@@ -140,14 +140,7 @@ impl Level {
         let elements = &self.world.elements;
         let index = RayIndex::new(elements);
         let start = Instant::now();
-        let form_factor = |i: usize, j: usize| {
-            let Some(polygon) = plain::visible_side(&elements[i], &elements[j]) else { return 0.0 };
-            let whole = contour::form_factor(&polygon, elements[i].normal);
-            let seen = |k: &usize| index.sees(elements[i].centroid, point_of(&elements[j], *k, i));
-            whole * (0..rays).filter(seen).count() as f64 / rays as f64
-        };
-        let row = |&i: &usize| (0..elements.len()).map(|j| form_factor(i, j)).collect();
-        let rows = receivers.iter().map(row).collect();
+        let rows = receivers.iter().map(|&i| row(elements, &index, i, rays)).collect();
         Cast { receivers, rows, time: start.elapsed() }
     }
 
@@ -164,20 +157,5 @@ impl Level {
         let nodes = self.means(radiosity);
         let irradiance: Vec<Rgb> = blocks.iter().flat_map(|block| apply(block, &nodes)).collect();
         receivers.iter().map(|&i| irradiance[i][0]).collect()
-    }
-}
-
-/// The `k`-th point on an element, from a sequence that fills it evenly (Roberts 2018), begun elsewhere for each receiver.
-fn point_of(element: &Element, k: usize, receiver: usize) -> DVec3 {
-    let along = |step: f64, salt: f64| ((k as f64 + 0.5) * step + receiver as f64 * salt).fract();
-    let (u, v) = (
-        along(0.754_877_666_246_692_8, 0.618_033_988_749_894_9),
-        along(0.569_840_290_998_053_2, 0.414_213_562_373_095),
-    );
-    match *element.corners.as_slice() {
-        [a, b, c] if u + v > 1.0 => a + (b - a) * (1.0 - u) + (c - a) * (1.0 - v),
-        [a, b, c] => a + (b - a) * u + (c - a) * v,
-        [a, b, c, d] => (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v,
-        _ => element.centroid,
     }
 }

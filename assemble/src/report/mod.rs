@@ -130,6 +130,10 @@ pub struct Seconds {
     pub exchange_overhead: f64,
     /// The light of points that were asked for; wall time.
     pub points: f64,
+    /// Wall time from the scene's file until the light of all elements is known: everything but proofs and outputs.
+    pub solve: f64,
+    /// The same in processor time, where the system tells.
+    pub solve_cpu: Option<f64>,
     /// Wall time of the run.
     pub total: f64,
 }
@@ -237,4 +241,15 @@ pub fn peak_rss() -> Option<usize> {
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kilobytes * 1024)
+}
+
+/// Processor time that this process took so far, all threads together, seconds; none where the system does not tell. In
+/// steps of a hundredth.
+pub fn cpu_seconds() -> Option<f64> {
+    const TICKS_PER_SECOND: f64 = 100.0;
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    // The second field, the program's name in parentheses, may hold anything; user and system time are the 14th and 15th.
+    let after_name = stat.rsplit_once(')')?.1;
+    let ticks: Vec<f64> = after_name.split_whitespace().skip(11).take(2).flat_map(str::parse).collect();
+    (ticks.len() == 2).then(|| ticks.iter().sum::<f64>() / TICKS_PER_SECOND)
 }

@@ -92,7 +92,8 @@ impl SceneOptions {
     }
 }
 
-fn element_size(text: &str) -> Result<ElementSize, String> {
+/// Reads an element size: metres, or `mesh`.
+pub fn element_size(text: &str) -> Result<ElementSize, String> {
     if text == "mesh" {
         return Ok(ElementSize::Mesh);
     }

@@ -1,0 +1,112 @@
+//! One dense matrix of the whole scene, F_ij for every pair of elements in f64, and the solution of (I − ρF) B = E.
+//! Goral, Torrance, Greenberg & Battaile 1984.
+
+use super::rays;
+use equilux_bake::equilibrium::endless::endless_light;
+use equilux_bake::equilibrium::krylov::gmres;
+use equilux_bake::equilibrium::{added, scaled, subtract};
+use equilux_bake::monitor::Monitor;
+use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::world::World;
+use equilux_formats::{Element, Optics, Rgb};
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// The residual that is left, relative to the largest radiosity: what our exchange proves by default.
+const RESIDUAL: f64 = 1e-6;
+
+/// Rows that are computed at once.
+const ROWS: usize = 512;
+
+/// The matrix.
+pub struct Dense {
+    size: usize,
+    /// By rows, `size × size`.
+    values: Vec<f64>,
+    /// Time spent on form factors, summed over threads.
+    pub time: Duration,
+}
+
+impl Dense {
+    /// The exact one. None if the monitor was stopped.
+    pub fn exact(world: &World, monitor: &Monitor) -> Option<Self> {
+        let size = world.elements.len();
+        let everyone: Vec<usize> = (0..world.instances()).collect();
+        let element: Vec<Option<usize>> = (0..world.nodes.len()).map(|node| world.element_of(node)).collect();
+        let mut matrix = Self { size, values: vec![0.0; size * size], time: Duration::ZERO };
+        let places: Vec<usize> = (0..size).collect();
+        for rows in places.chunks(ROWS) {
+            let receivers = Audience::Points(&world.elements[rows[0]..rows[0] + rows.len()]);
+            let request = Request {
+                world,
+                receivers,
+                senders: &everyone,
+                columns: 0..world.nodes.len(),
+                already: None,
+                resolution: EXACT,
+                revision: None,
+            };
+            let timed = block(&request, monitor)?;
+            matrix.time += timed.time;
+            for (k, &i) in rows.iter().enumerate() {
+                let row = &mut matrix.values[i * size..(i + 1) * size];
+                for (node, value) in timed.block.row(k) {
+                    row[element[node].expect("an exact row names elements")] = value;
+                }
+            }
+        }
+        Some(matrix)
+    }
+
+    /// The one with so many rays a pair. None if the monitor was stopped.
+    pub fn by_rays(elements: &[Element], count: usize, monitor: &Monitor) -> Option<Self> {
+        let size = elements.len();
+        let index = RayIndex::new(elements);
+        monitor.begin("rays", size);
+        let row = |i: usize| {
+            let start = Instant::now();
+            let row = if monitor.stopped() { vec![] } else { rays::row(elements, &index, i, count) };
+            monitor.advance(1);
+            (row, start.elapsed())
+        };
+        let (rows, times): (Vec<Vec<f64>>, Vec<Duration>) = (0..size).into_par_iter().map(row).unzip();
+        let matrix = Self { size, values: rows.concat(), time: times.iter().sum() };
+        (!monitor.stopped()).then_some(matrix)
+    }
+
+    /// Bytes of the matrix.
+    pub fn bytes(&self) -> usize {
+        self.values.len() * size_of::<f64>()
+    }
+
+    /// Whether some elements see only each other, absorb nothing, and emit: then there is no solution.
+    pub fn is_endless(&self, optics: &Optics) -> bool {
+        let row = |i: usize| -> Vec<(usize, f64)> {
+            let row = self.values[i * self.size..(i + 1) * self.size].iter().copied();
+            row.enumerate().filter(|&(_, value)| value != 0.0).collect()
+        };
+        endless_light(optics, row).is_some()
+    }
+
+    /// H = F B, W/m².
+    pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
+        let gathered = |row: &[f64]| {
+            row.iter().zip(radiosity).fold([0.0; 3], |sum, (&f, b)| added(sum, b.map(|b| f * b)))
+        };
+        // Chunks of no length are not allowed, and a scene may be empty.
+        self.values.par_chunks(self.size.max(1)).map(gathered).collect()
+    }
+
+    /// B = E + ρ F B, W/m².
+    pub fn solve(&self, optics: &Optics) -> Vec<Rgb> {
+        let Optics { reflectance, emission } = optics;
+        let without_reflection = |b: &[Rgb]| -> Vec<Rgb> {
+            let irradiance = self.irradiance(b);
+            (0..b.len()).map(|i| subtract(b[i], scaled(reflectance[i], irradiance[i]))).collect()
+        };
+        let mut radiosity = emission.clone();
+        gmres(without_reflection, |r| r.to_vec(), emission, &mut radiosity, RESIDUAL);
+        radiosity
+    }
+}

@@ -1,0 +1,101 @@
+//! Progressive refinement: the elements with the most unshot light shoot it at all others, row by row of a matrix that is
+//! never kept. Cohen, Chen, Wallace & Greenberg 1988.
+//!
+//! F_ij = F_ji A_j / A_i: what i receives of shooter j comes from the row of j by reciprocity, as there. It holds for averages
+//! over elements and only nearly for centroids, so the light differs a little from that of the matrix.
+
+use super::Solved;
+use equilux_bake::equilibrium::{added, scaled};
+use equilux_bake::monitor::Monitor;
+use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::world::World;
+use equilux_formats::{Element, Optics, Rgb};
+use std::time::Duration;
+
+/// Elements that shoot at once, so that threads have something to do.
+const SHOOTERS: usize = 16;
+
+/// Shots an element after which light is taken for endless.
+const SHOTS: usize = 100;
+
+/// Shoot until the unshot power is less than the share `unshot` of what all elements emit. None if the monitor was stopped.
+pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> Option<Solved> {
+    let elements = &world.elements;
+    let power = |left: &[Rgb]| -> f64 {
+        left.iter().zip(elements).map(|(b, e)| e.area * b.iter().sum::<f64>()).sum()
+    };
+    let emitted = power(&optics.emission);
+    let mut light = Light {
+        world,
+        optics,
+        radiosity: optics.emission.clone(),
+        irradiance: vec![[0.0; 3]; elements.len()],
+        unshot: optics.emission.clone(),
+        time: Duration::ZERO,
+    };
+    monitor.begin("shots", 0);
+    let mut shots = 0;
+    while power(&light.unshot) > unshot * emitted && shots < SHOTS * elements.len() {
+        let brightest = brightest(elements, &light.unshot);
+        light.shoot(&brightest, monitor)?;
+        shots += brightest.len();
+        monitor.advance(brightest.len());
+    }
+    let Light { radiosity, irradiance, time, .. } = light;
+    Some(Solved { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
+}
+
+struct Light<'a> {
+    world: &'a World,
+    optics: &'a Optics,
+    radiosity: Vec<Rgb>,
+    irradiance: Vec<Rgb>,
+    unshot: Vec<Rgb>,
+    time: Duration,
+}
+
+impl Light<'_> {
+    /// These elements send all that they have not sent yet.
+    fn shoot(&mut self, shooters: &[usize], monitor: &Monitor) -> Option<()> {
+        let world = self.world;
+        let points: Vec<Element> = shooters.iter().map(|&j| world.elements[j]).collect();
+        let everyone: Vec<usize> = (0..world.instances()).collect();
+        let request = Request {
+            world,
+            receivers: Audience::Points(&points),
+            senders: &everyone,
+            columns: 0..world.nodes.len(),
+            already: None,
+            resolution: EXACT,
+            revision: None,
+        };
+        let timed = block(&request, monitor)?;
+        self.time += timed.time;
+        let sent: Vec<Rgb> = shooters.iter().map(|&j| std::mem::take(&mut self.unshot[j])).collect();
+        for (k, (shooter, sent)) in points.iter().zip(sent).enumerate() {
+            for (node, seen) in timed.block.row(k) {
+                let i = world.element_of(node).expect("an exact row names elements");
+                let form_factor = seen * shooter.area / world.elements[i].area;
+                let arrived = sent.map(|b| b * form_factor);
+                let reflected = scaled(self.optics.reflectance[i], arrived);
+                self.irradiance[i] = added(self.irradiance[i], arrived);
+                self.radiosity[i] = added(self.radiosity[i], reflected);
+                self.unshot[i] = added(self.unshot[i], reflected);
+            }
+        }
+        Some(())
+    }
+}
+
+/// The elements with the most unshot power, in the order of elements, for neighbours share their search.
+fn brightest(elements: &[Element], unshot: &[Rgb]) -> Vec<usize> {
+    let power = |j: usize| elements[j].area * unshot[j].iter().sum::<f64>();
+    let mut order: Vec<usize> = (0..elements.len()).filter(|&j| power(j) > 0.0).collect();
+    let count = SHOOTERS.min(order.len());
+    if count < order.len() {
+        order.select_nth_unstable_by(count, |&a, &b| power(b).total_cmp(&power(a)).then(a.cmp(&b)));
+    }
+    order.truncate(count);
+    order.sort_unstable();
+    order
+}

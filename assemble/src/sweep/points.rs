@@ -1,0 +1,65 @@
+//! Points spread over a scene's surfaces to compare light at: the same in every run, and as many on each element as its
+//! area asks for.
+
+use crate::points::Place;
+use equilux_formats::Element;
+use glam::DVec3;
+
+/// `count` points, each of which speaks for the same area. The k-th lies on the element in which the share (k + ½)/count of
+/// the whole area is reached, counted element by element; on it, at the k-th place of a sequence that fills a square evenly
+/// (Roberts 2018). None where nothing has an area.
+pub fn surface_points(elements: &[Element], count: usize) -> Vec<Place> {
+    let reached: Vec<f64> = elements
+        .iter()
+        .scan(0.0, |sum, element| {
+            *sum += element.area;
+            Some(*sum)
+        })
+        .collect();
+    let Some(&whole) = reached.last().filter(|&&area| area > 0.0) else { return vec![] };
+    let point = |k: usize| {
+        let share = whole * (k as f64 + 0.5) / count as f64;
+        let element = &elements[reached.partition_point(|&area| area < share).min(elements.len() - 1)];
+        Place { point: place_on(element, evenly(k)), normal: element.normal }
+    };
+    (0..count).map(point).collect()
+}
+
+/// The k-th place in the unit square: multiples of the powers of 1/p, where p³ = p + 1.
+pub fn evenly(k: usize) -> (f64, f64) {
+    let along = |step: f64| ((k as f64 + 0.5) * step).fract();
+    (along(0.754_877_666_246_692_8), along(0.569_840_290_998_053_2))
+}
+
+/// The place on an element that a place in the unit square stands for. Areas of triangles and parallelograms stay in
+/// proportion.
+pub fn place_on(element: &Element, (u, v): (f64, f64)) -> DVec3 {
+    match *element.corners.as_slice() {
+        [a, b, c] if u + v > 1.0 => a + (b - a) * (1.0 - u) + (c - a) * (1.0 - v),
+        [a, b, c] => a + (b - a) * u + (c - a) * v,
+        [a, b, c, d] => (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v,
+        _ => element.centroid,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use equilux_formats::{Corners, FaceId, MaterialId};
+
+    /// A rectangle at height z, a metre wide and `length` metres long.
+    fn rectangle(z: f64, length: f64) -> Element {
+        let corners =
+            [(0.0, 0.0), (1.0, 0.0), (1.0, length), (0.0, length)].map(|(x, y)| DVec3::new(x, y, z));
+        Element::new(Corners::quad(corners), MaterialId(0), FaceId(0))
+    }
+
+    #[test]
+    fn elements_get_points_by_area_and_everywhere() {
+        let points = surface_points(&[rectangle(0.0, 1.0), rectangle(1.0, 3.0)], 400);
+        let (low, high): (Vec<Place>, Vec<Place>) = points.iter().partition(|point| point.point.z < 0.5);
+        assert_eq!((low.len(), high.len()), (100, 300));
+        let quarter = high.iter().filter(|p| p.point.x < 0.5 && p.point.y < 1.5).count();
+        assert!(quarter.abs_diff(75) <= 5, "{quarter} of 300 points in a quarter");
+    }
+}

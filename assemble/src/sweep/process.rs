@@ -1,0 +1,163 @@
+//! Runs a setting in a process of its own, so that its memory and time are its own, and keeps what it told under a name that
+//! tells everything it depends on: a run that is there is not run again.
+
+use super::run::{Facts, PointLight, Run};
+use super::setting::Setting;
+use crate::output_file;
+use equilux_bake::monitor::Monitor;
+use equilux_formats::{Content, Error, Result};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How often it is asked whether a run has ended.
+const TICK: Duration = Duration::from_millis(5);
+
+/// What is the same for all runs.
+pub struct Runner<'a> {
+    /// The program.
+    pub program: PathBuf,
+    /// The scene's file.
+    pub scene: &'a Path,
+    /// The points to compare light at.
+    pub points: PathBuf,
+    /// Options that every run gets.
+    pub more: &'a [String],
+    /// The folder of the sweep.
+    pub folder: &'a Path,
+    /// The content of program, scene and points.
+    pub content: Content,
+    /// When a run that goes on is ended.
+    pub deadline: Instant,
+    /// The wish to stop.
+    pub monitor: &'a Monitor,
+}
+
+/// How a run ended.
+pub enum Ended {
+    /// With a result.
+    Done(Box<Run>),
+    /// With an error; what it said.
+    Failed(String),
+    /// By somebody's wish.
+    Stopped,
+    /// When the time was up.
+    TimeUp,
+}
+
+impl Runner<'_> {
+    /// The result of this setting from an earlier sweep, if there is one.
+    pub fn kept(&self, setting: &Setting) -> Option<Run> {
+        serde_json::from_slice(&fs::read(self.record(setting)).ok()?).ok()
+    }
+
+    /// Run this setting from nothing, and keep the result.
+    pub fn run(&self, setting: &Setting) -> Result<Ended> {
+        let unusable = |error: std::io::Error| {
+            let found = format!("cannot be used for a run ({error})");
+            Error::new(self.folder, found, "a folder that can be written to", "choose another with --out DIR")
+        };
+        let place = tempfile::Builder::new().prefix("running-").tempdir_in(self.folder).map_err(unusable)?;
+        let start = Instant::now();
+        let running = self.start(setting, place.path()).map_err(unusable)?;
+        let Some(success) = self.wait(running).map_err(unusable)? else {
+            return Ok(if self.monitor.stopped() { Ended::Stopped } else { Ended::TimeUp });
+        };
+        let wall = start.elapsed().as_secs_f64();
+        if self.monitor.stopped() {
+            // The run may have heard the same wish and ended early.
+            return Ok(Ended::Stopped);
+        }
+        if !success {
+            let said = fs::read_to_string(place.path().join("stderr")).unwrap_or_default();
+            return Ok(Ended::Failed(said.trim().to_owned()));
+        }
+        let (facts, light) = self.results(place.path())?;
+        let run = Run { setting: setting.clone(), command: self.command(setting), wall, facts, light };
+        let text = serde_json::to_vec(&run).expect("a run is plain data");
+        output_file::write(&self.record(setting), |out| out.write_all(&text))?;
+        Ok(Ended::Done(Box::new(run)))
+    }
+
+    /// The command line, for a person.
+    pub fn command(&self, setting: &Setting) -> String {
+        let arguments = setting.arguments(&self.scene.display().to_string());
+        [vec!["assemble".to_owned()], arguments, self.more.to_vec()].concat().join(" ")
+    }
+
+    fn start(&self, setting: &Setting, place: &Path) -> std::io::Result<Child> {
+        let mut command = Command::new(&self.program);
+        command.args(setting.arguments(&self.scene.display().to_string())).args(self.more);
+        command.arg("--json").arg("--out").arg(place.join("out")).arg("--points").arg(&self.points);
+        if !setting.is_classic() {
+            command.args(["--pictures", "none", "--exact-rows", "0", "--cache"]).arg(place.join("cache"));
+        }
+        command
+            .stdin(Stdio::null())
+            .stdout(File::create(place.join("stdout"))?)
+            .stderr(File::create(place.join("stderr"))?)
+            .spawn()
+    }
+
+    /// Whether the run ended well; none if it was ended.
+    fn wait(&self, mut running: Child) -> std::io::Result<Option<bool>> {
+        let mut shown = 0;
+        let start = Instant::now();
+        loop {
+            if let Some(status) = running.try_wait()? {
+                return Ok(Some(status.success()));
+            }
+            if self.monitor.stopped() || Instant::now() > self.deadline {
+                running.kill()?;
+                running.wait()?;
+                return Ok(None);
+            }
+            std::thread::sleep(TICK);
+            let tenths = (start.elapsed().as_secs_f64() * 10.0) as usize;
+            self.monitor.advance(tenths - shown);
+            shown = tenths;
+        }
+    }
+
+    fn results(&self, place: &Path) -> Result<(Facts, Vec<Option<PointLight>>)> {
+        let wrong = |path: &Path, found: String| {
+            Error::new(path, found, "what this program writes", "report this as a bug of it")
+        };
+        let printed = place.join("stdout");
+        let text = fs::read(&printed).map_err(|error| wrong(&printed, error.to_string()))?;
+        let facts = serde_json::from_slice(&text).map_err(|error| wrong(&printed, error.to_string()))?;
+        let scene = self.scene.file_stem().unwrap_or_default();
+        let points = place.join("out").join(scene).join("points.csv");
+        let table = fs::read_to_string(&points).map_err(|error| wrong(&points, error.to_string()))?;
+        let light: Option<Vec<_>> = table.lines().skip(1).map(point_light).collect();
+        let light = light.ok_or_else(|| wrong(&points, "a line is no point with its light".into()))?;
+        if light.iter().all(Option::is_none) {
+            let found = format!("none of its points lies on a surface of {}", self.scene.display());
+            let remedy = "give the light of this very scene with --truth FILE.csv";
+            return Err(Error::new(&self.points, found, "points on the scene's surfaces", remedy));
+        }
+        Ok((facts, light))
+    }
+
+    fn record(&self, setting: &Setting) -> PathBuf {
+        let arguments = [setting.arguments("SCENE"), self.more.to_vec()].concat().join("\n");
+        let digest = self.content.clone().bytes(arguments).digest().to_string();
+        self.folder.join("runs").join(&digest[..32]).with_extension("json")
+    }
+}
+
+/// A line of points.csv: place (3), normal (3), H gathered (3), number of the element, H of the element (3).
+/// Without light where the point lies on no surface; none at all if the line is something else.
+fn point_light(line: &str) -> Option<Option<PointLight>> {
+    let fields: Vec<&str> = line.split(',').collect();
+    let rgb = |first: usize| -> Option<[f64; 3]> {
+        let numbers: Option<Vec<f64>> =
+            (first..first + 3).map(|place| fields.get(place)?.parse().ok()).collect();
+        numbers?.try_into().ok()
+    };
+    if fields.get(9)?.is_empty() {
+        return Some(None);
+    }
+    Some(Some(PointLight { gathered: rgb(6)?, element: rgb(10)? }))
+}

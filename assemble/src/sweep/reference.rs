@@ -1,0 +1,116 @@
+//! What runs are compared with: irradiance at points, from a file or from the finest run of the sweep.
+
+use super::run::Run;
+use crate::points::Place;
+use equilux_formats::{Error, Result, Rgb};
+use glam::DVec3;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// Irradiance at points.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    /// The area that each point speaks for, in any unit.
+    pub areas: Vec<f64>,
+    /// W/m².
+    pub irradiance: Vec<Rgb>,
+    /// Standard error of that, W/m².
+    pub noise: Vec<Rgb>,
+}
+
+/// The columns that a file of truth needs, and what they are.
+const COLUMNS: &str = "columns x, y, z, nx, ny, nz, area, Hc_r, Hc_g, Hc_b and, if there is noise, Hc_se_r, Hc_se_g, Hc_se_b, \
+                       with a number in every line";
+
+impl Reference {
+    /// From a file in the form of `scenes/*/truth.csv`: irradiance at the centroids of elements, with their areas.
+    pub fn read(path: &Path) -> Result<Self> {
+        let wrong = |found: String| {
+            Error::new(
+                path,
+                found,
+                COLUMNS,
+                "give a file as scenes/README.md describes it with --truth FILE.csv",
+            )
+        };
+        let unreadable = |error: csv::Error| wrong(format!("cannot be read ({error})"));
+        let mut table = csv::Reader::from_path(path).map_err(unreadable)?;
+        let header = table.headers().map_err(unreadable)?.clone();
+        let places: HashMap<&str, usize> =
+            header.iter().enumerate().map(|(place, name)| (name.trim(), place)).collect();
+        let lines: Vec<csv::StringRecord> =
+            table.records().collect::<std::result::Result<_, _>>().map_err(unreadable)?;
+        if lines.is_empty() {
+            return Err(wrong("holds no line below its first".into()));
+        }
+        let column = |name: &str| -> Result<Vec<f64>> {
+            let place = *places.get(name).ok_or_else(|| wrong(format!("has no column {name}")))?;
+            let number = |(row, line): (usize, &csv::StringRecord)| {
+                let field = line.get(place).unwrap_or_default();
+                let number = field.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+                number.ok_or_else(|| wrong(format!("line {} has `{field}` for {name}", row + 2)))
+            };
+            lines.iter().enumerate().map(number).collect()
+        };
+        let rgb = |name: &str| -> Result<Vec<Rgb>> {
+            let [r, g, b] = ["r", "g", "b"].map(|channel| column(&format!("{name}_{channel}")));
+            let (r, g, b) = (r?, g?, b?);
+            Ok((0..r.len()).map(|row| [r[row], g[row], b[row]]).collect())
+        };
+        ["x", "y", "z", "nx", "ny", "nz"].iter().try_for_each(|name| column(name).map(drop))?;
+        let areas = column("area")?;
+        if let Some(row) = areas.iter().position(|&area| area <= 0.0) {
+            return Err(wrong(format!("line {} has an area of {}", row + 2, areas[row])));
+        }
+        let irradiance = rgb("Hc")?;
+        let noise =
+            if places.contains_key("Hc_se_r") { rgb("Hc_se")? } else { vec![[0.0; 3]; irradiance.len()] };
+        Ok(Self { areas, irradiance, noise })
+    }
+
+    /// The light that a run gathered at points which all speak for the same area.
+    pub fn of(run: &Run) -> Self {
+        let gathered = run.light.iter().map(|point| point.as_ref().map(|point| point.gathered));
+        Self::without_noise(&vec![1.0; run.light.len()], gathered)
+    }
+
+    /// Light at points that speak for these areas; those where it is not known count for nothing.
+    pub fn without_noise(areas: &[f64], known: impl Iterator<Item = Option<Rgb>>) -> Self {
+        let noise = vec![[0.0; 3]; areas.len()];
+        let (areas, irradiance) = areas
+            .iter()
+            .zip(known)
+            .map(|(&area, known)| known.map_or((0.0, [0.0; 3]), |irradiance| (area, irradiance)))
+            .unzip();
+        Self { areas, irradiance, noise }
+    }
+
+    /// The noise over the mean, in root mean square over area; the worst channel.
+    pub fn noise_share(&self) -> f64 {
+        let of = |c: usize| {
+            let area: f64 = self.areas.iter().sum();
+            let over = |values: &dyn Fn(usize) -> f64| {
+                (0..self.areas.len()).map(|k| self.areas[k] * values(k)).sum::<f64>() / area
+            };
+            let mean = over(&|k| self.irradiance[k][c]);
+            if mean > 0.0 { over(&|k| self.noise[k][c].powi(2)).sqrt() / mean } else { 0.0 }
+        };
+        (0..3).map(of).fold(0.0, f64::max)
+    }
+
+    /// Errors below this share of the mean cannot be told from none, as taking out the noise leaves the chance of it: the
+    /// variance of n squares of standard normal numbers is 2n.
+    pub fn resolves(&self) -> f64 {
+        self.noise_share() * (2.0 / self.areas.len() as f64).powf(0.25)
+    }
+}
+
+/// Points as a file that `assemble --points` reads.
+pub fn points_csv(points: &[Place]) -> String {
+    let line = |place: &Place| {
+        let DVec3 { x, y, z } = place.point;
+        let n = place.normal;
+        format!("{x},{y},{z},{},{},{}\n", n.x, n.y, n.z)
+    };
+    std::iter::once("x,y,z,nx,ny,nz\n".to_owned()).chain(points.iter().map(line)).collect()
+}

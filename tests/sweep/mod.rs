@@ -1,0 +1,41 @@
+//! `assemble sweep` reports error against run time, goes on where it was stopped, and compares with classic ways.
+
+mod bad_truth;
+mod classic;
+mod files;
+mod front;
+#[cfg(unix)]
+mod stopped;
+
+use equilux_tests::rooms::furnished;
+use equilux_tests::workshop::Workshop;
+use serde_json::Value;
+
+/// Where a sweep of scene.glb leaves its files.
+const FOLDER: &str = "out/scene/sweep";
+
+/// A small room with a table and a crate in it.
+fn workshop() -> Workshop {
+    Workshop::with(&furnished())
+}
+
+/// The summary of a sweep that ended well.
+fn swept(workshop: &Workshop, budget: &str) -> Value {
+    let ended = workshop.run("assemble", &["sweep", "scene.glb", "--budget", budget, "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    serde_json::from_str(&ended.stdout).unwrap_or_else(|_| panic!("not one object: {}", ended.stdout))
+}
+
+/// How many runs are kept.
+fn kept(workshop: &Workshop) -> usize {
+    workshop
+        .files(&format!("{FOLDER}/runs"))
+        .keys()
+        .filter(|path| path.extension().is_some_and(|e| e == "json"))
+        .count()
+}
+
+/// The number of runs that a summary tells of.
+fn told(summary: &Value) -> usize {
+    ["runs", "exchanges"].iter().map(|list| summary[list].as_array().expect("a list").len()).sum()
+}
