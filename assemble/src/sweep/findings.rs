@@ -26,7 +26,8 @@ pub fn findings(runs: &[Run], rows: &[Row], size: f64) -> Vec<String> {
 
 /// `1.2 %`, with two digits that tell something.
 pub fn percent(share: f64) -> String {
-    format!("{} %", two_digits(share * 100.0))
+    // The unit stays on the line of its number.
+    format!("{}\u{a0}%", two_digits(share * 100.0))
 }
 
 /// A number with two digits, or all before its point: 0.061, 0.61, 6.1, 61, 610.
