@@ -26,6 +26,8 @@ pub struct Coupled {
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
+    /// The same, receiver by receiver; empty if there were none.
+    pub computed_by_row: Vec<u32>,
     /// F_kk with what stands inside the part, if anything does.
     pub corrected: Option<Corrected>,
     /// Time spent on form factors of the coupling, summed over threads.
@@ -44,6 +46,8 @@ pub struct Corrected {
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
+    /// The same, receiver by receiver; empty if there were none.
+    pub computed_by_row: Vec<u32>,
     /// Time spent on its form factors, summed over threads.
     pub time: Duration,
 }
@@ -131,8 +135,8 @@ impl Coupler<'_> {
         let Some(found) = self.block((instance, COUPLING), request, Some(own), None)? else {
             return Ok(None);
         };
-        let Block { rows: coupling, origin, computed, time, .. } = found;
-        Ok(Some(Coupled { coupling, origin, computed, corrected, time }))
+        let Block { rows: coupling, origin, computed, computed_by_row, time, .. } = found;
+        Ok(Some(Coupled { coupling, origin, computed, computed_by_row, corrected, time }))
     }
 
     /// Where the blocks of an instance would come from. Computes none of them.
@@ -168,7 +172,7 @@ impl Coupler<'_> {
         let Some(found) = self.block((instance, CORRECTED), request, None, Some(alone))? else {
             return Ok(None);
         };
-        let Block { rows: self_block, origin, computed, key, time } = found;
+        let Block { rows: self_block, origin, computed, computed_by_row, key, time } = found;
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let optics = self.placed.paint_of(instance);
         let manifest = light_manifest(key.into(), &optics, part.local.solver);
@@ -178,7 +182,8 @@ impl Coupler<'_> {
             Ok(Some(BakedLight { optics: optics.clone(), local }))
         })?
         .expect("a local equilibrium is not stopped halfway");
-        Ok(Some(Corrected { self_block, local: light.local, intruders, origin, computed, time }))
+        let local = light.local;
+        Ok(Some(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time }))
     }
 
     /// The block that is asked for: from the cache, or from an older one as far as what changed since cannot matter, or
@@ -192,7 +197,7 @@ impl Coupler<'_> {
     ) -> Result<Option<Block>> {
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
-        let (mut time, mut computed) = (Duration::ZERO, 0);
+        let (mut time, mut computed, mut computed_by_row) = (Duration::ZERO, 0, vec![]);
         let found = cached_or_revised(self.store, &name, &manifest, self.monitor, || {
             let receivers = self.placed.world.elements_of(instance).len();
             self.monitor.begin(format!("{what} of {}", self.placed.instances[instance].name), receivers);
@@ -206,15 +211,16 @@ impl Coupler<'_> {
             let sums = |own: &Rows| (0..own.receivers()).map(|i| own.row_sum(i)).collect::<Vec<_>>();
             let already = own.map(sums);
             Ok(block(&Request { revision, already: already.as_deref(), ..request }, self.monitor).map(
-                |timed| {
+                |mut timed| {
                     (time, computed) = (timed.time, timed.computed);
+                    computed_by_row = std::mem::take(&mut timed.computed_by_row);
                     made(timed, older.as_ref().map(|older| older.key))
                 },
             ))
         })?;
         Ok(found.map(|(rows, origin)| {
             let key = self.store.target(&manifest.key());
-            Block { rows, origin, key, computed, time }
+            Block { rows, origin, key, computed, computed_by_row, time }
         }))
     }
 
@@ -275,6 +281,7 @@ struct Block {
     /// The key under which it lies.
     key: Key,
     computed: usize,
+    computed_by_row: Vec<u32>,
     time: Duration,
 }
 

@@ -27,8 +27,8 @@ pub struct Found {
     pub groups: Vec<RowGroup>,
     /// Their sums.
     pub sums: Vec<f64>,
-    /// Number of form factors that were computed.
-    pub computed: usize,
+    /// Number of form factors that were computed for each receiver.
+    pub computed: Vec<u32>,
     /// Number of groups that are not what they were before; all, if there is no before.
     pub changed: usize,
     /// Time summed over threads.
@@ -78,7 +78,7 @@ impl<'a> Descent<'a> {
         Found {
             groups: [left.groups, right.groups].into_iter().flatten().collect(),
             sums: [left.sums, right.sums].concat(),
-            computed: left.computed + right.computed,
+            computed: [left.computed, right.computed].concat(),
             changed: left.changed + right.changed,
             time: time + left.time + right.time,
         }
@@ -93,7 +93,7 @@ impl<'a> Descent<'a> {
         Found {
             groups: vec![rows.group],
             sums: rows.sums,
-            computed: rows.computed,
+            computed: vec![(rows.computed / group.elements.len()) as u32; group.elements.len()],
             changed: usize::from(rows.is_changed),
             time: start.elapsed(),
         }

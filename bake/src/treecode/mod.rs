@@ -77,6 +77,8 @@ pub struct Timed {
     pub row_sums: Vec<f64>,
     /// Number of form factors that were computed: all, unless an older block was brought up to date.
     pub computed: usize,
+    /// The same, receiver by receiver.
+    pub computed_by_row: Vec<u32>,
     /// Whether an older block stays as it was, but for the numbers of its columns.
     pub is_unchanged: bool,
     /// Time summed over threads.
@@ -134,7 +136,8 @@ pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
     Some(Timed {
         block: unchanged.unwrap_or_else(made),
         row_sums: found.sums,
-        computed: found.computed,
+        computed: found.computed.iter().map(|&count| count as usize).sum(),
+        computed_by_row: found.computed,
         is_unchanged,
         time: found.time,
     })
