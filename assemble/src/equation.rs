@@ -8,6 +8,7 @@ use crate::exchange::{Node, nodes};
 use crate::gather::outside::lights;
 use crate::gather::sky::{Radiances, Sky};
 use crate::gather::{Gather, Lights};
+use crate::observer::Observer;
 use crate::placed::Placed;
 use crate::run::Job;
 use equilux_bake::monitor::Monitor;
@@ -42,6 +43,7 @@ impl Equation {
         prepared: Prepared,
         store: &Store,
         monitor: &Monitor,
+        observer: &dyn Observer,
     ) -> Result<Self> {
         let stopped = || {
             let remedy = "run the same command again: what was finished is in the cache";
@@ -50,8 +52,10 @@ impl Equation {
         let resolution = job.preparation.resolution;
         let sky: Option<Radiances> = job.sky.as_ref().map(Sky::read).transpose()?;
         let oven = Oven { store, file: &job.scene, resolution, monitor };
-        let mut placed = bake_parts(&oven, prepared)?.ok_or_else(stopped)?;
-        let coupled = couple(&coupler(job, &placed, store, monitor))?.ok_or_else(stopped)?;
+        observer.prepared(scene, &prepared);
+        let mut placed = bake_parts(&oven, prepared, observer)?.ok_or_else(stopped)?;
+        observer.placed(&placed, &scene.cameras);
+        let coupled = couple(&coupler(job, &placed, store, monitor), observer)?.ok_or_else(stopped)?;
         placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
         let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
         let direct = direct(&coupler(job, &placed, store, monitor), &lights)?.ok_or_else(stopped)?;
@@ -71,11 +75,12 @@ impl Equation {
     }
 }
 
-fn bake_parts(oven: &Oven, prepared: Prepared) -> Result<Option<Placed>> {
+fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<Option<Placed>> {
     oven.read_ahead(&prepared.parts);
     let mut parts: Vec<Baked> = Vec::new();
-    for part in &prepared.parts {
+    for (number, part) in prepared.parts.iter().enumerate() {
         let Some(baked) = oven.bake(part)? else { return Ok(None) };
+        observer.baked(number, &baked);
         parts.push(baked);
     }
     Ok(Some(Placed::new(parts, prepared.instances)))
@@ -85,7 +90,12 @@ fn coupler<'a>(job: &'a Job, placed: &'a Placed, store: &'a Store, monitor: &'a 
     Coupler { placed, store, file: &job.scene, resolution: job.preparation.resolution, monitor }
 }
 
-fn couple(coupler: &Coupler) -> Result<Option<Vec<Coupled>>> {
+fn couple(coupler: &Coupler, observer: &dyn Observer) -> Result<Option<Vec<Coupled>>> {
     coupler.read_ahead();
-    (0..coupler.placed.instances.len()).map(|k| coupler.couple(k)).collect()
+    let couple = |k: usize| {
+        let coupled = coupler.couple(k)?;
+        coupled.iter().for_each(|coupled| observer.coupled(k, coupled));
+        Ok(coupled)
+    };
+    (0..coupler.placed.instances.len()).map(couple).collect()
 }

@@ -23,6 +23,7 @@ pub mod gather;
 pub mod gltf_export;
 pub mod hull;
 pub mod lightmap;
+pub mod observer;
 mod older;
 pub mod output_file;
 mod outputs;

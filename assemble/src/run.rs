@@ -4,12 +4,13 @@ use crate::account::refuse_endless_light;
 use crate::classic::{classic, whole};
 use crate::direct::with_direct;
 use crate::equation::Equation;
-use crate::exchange::{Goal, Method, exchange};
+use crate::exchange::{Goal, Method, exchange_observed};
 use crate::explain::explained;
 use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
 use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
+use crate::observer::{Observer, Unobserved};
 use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
 use crate::points;
 use crate::proof::prove;
@@ -91,6 +92,11 @@ impl Job {
 
 /// Run the job; everything is written when this returns.
 pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
+    run_observed(job, monitor, &Unobserved)
+}
+
+/// The same with somebody who sees it go on.
+pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Result<Report> {
     let start = Instant::now();
     let mut scene = import_scene(&job.scene)?;
     scene.sources.extend(job.beside().map(Path::to_path_buf));
@@ -106,12 +112,14 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     job.depfile.as_deref().map(stamp::check).transpose()?;
     let store = Store::open(&job.cache)?;
     let element_size = prepared.element_size.to_string();
-    let equation = Equation::of(job, &scene, prepared, &store, monitor)?;
+    let equation = Equation::of(job, &scene, prepared, &store, monitor, observer)?;
     let nodes = equation.nodes();
     let Equation { placed, coupled, optics, direct, .. } = &equation;
     refuse_endless_light(placed, &nodes, &whole(&equation.driven), &job.scene)?;
     let start_light = if job.warm { last_light(placed, &store, &job.scene) } else { None };
-    let mut outcome = exchange(&nodes, job.method, job.goal, start_light.as_deref(), monitor);
+    observer.coupled_all(placed, coupled, optics);
+    let start_light = start_light.as_deref();
+    let mut outcome = exchange_observed(&nodes, job.method, job.goal, start_light, monitor, observer);
     if job.warm {
         keep(placed, &store, &job.scene, &outcome.radiosity)?;
     }
@@ -120,6 +128,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let peak = peak_rss();
     let classic = if job.verify { classic(placed, &whole(&equation.driven), monitor) } else { None };
     with_direct(&mut outcome.irradiance, &direct.irradiance);
+    observer.settled(&outcome);
 
     let light = Light {
         equation: &equation,

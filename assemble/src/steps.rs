@@ -20,14 +20,12 @@ pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Secon
         })
         .collect();
     let coupling: Vec<f64> = coupled.iter().map(|c| c.time.as_secs_f64()).collect();
-    let solve: Vec<f64> = times.solve.iter().map(Duration::as_secs_f64).collect();
-    let transfer: Vec<f64> = times.transfer.iter().map(Duration::as_secs_f64).collect();
+    let [solve, transfer] = [&times.solve, &times.transfer].map(|steps| in_seconds(steps));
 
-    let split = |steps: &[f64]| (steps.first().copied().unwrap_or(0.0), steps.iter().skip(1).sum::<f64>());
     let total = |steps: &[f64]| steps.iter().sum::<f64>();
     let longest = |steps: &[f64]| steps.iter().copied().fold(0.0, f64::max);
     let ((step1, step2), (step3, step4)) = (split(&own), split(&coupling));
-    let ((step5, step6), (step8, step7)) = (split(&solve), split(&transfer));
+    let Seconds { step5, step6, step7, step8, .. } = rounds(times);
     Seconds {
         step1,
         step2,
@@ -46,4 +44,20 @@ pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Secon
         solve_cpu: None,
         total: 0.0,
     }
+}
+
+/// Steps 5–8 alone: what rounds take.
+pub fn rounds(times: &StepTimes) -> Seconds {
+    let ((step5, step6), (step8, step7)) =
+        (split(&in_seconds(&times.solve)), split(&in_seconds(&times.transfer)));
+    Seconds { step5, step6, step7, step8, ..Seconds::default() }
+}
+
+fn in_seconds(steps: &[Duration]) -> Vec<f64> {
+    steps.iter().map(Duration::as_secs_f64).collect()
+}
+
+/// The first instance's time and that of all others.
+fn split(steps: &[f64]) -> (f64, f64) {
+    (steps.first().copied().unwrap_or(0.0), steps.iter().skip(1).sum())
 }

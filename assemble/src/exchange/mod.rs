@@ -12,13 +12,14 @@ mod sweep;
 mod whole;
 
 use crate::coupling::Coupled;
+use crate::observer::{Observer, Unobserved};
 use crate::placed::Placed;
 use energy::Energy;
 use equilux_bake::equilibrium::{LocalSystem, added, scaled, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
 use groups::groups;
-use rounds::Course;
+use rounds::{Course, Judged};
 use std::time::{Duration, Instant};
 use whole::Whole;
 
@@ -88,6 +89,17 @@ pub struct Known {
     pub relative_bound: f64,
     /// Where the power is.
     pub energy: Energy,
+}
+
+impl Known {
+    /// The same with another group of parts.
+    fn with(mut self, judged: &Judged) -> Self {
+        self.residual = judged.residual.into_iter().fold(self.residual, f64::max);
+        self.error_bound = judged.error_bound.into_iter().fold(self.error_bound, f64::max);
+        self.relative_bound = self.relative_bound.max(judged.relative_bound());
+        self.energy += judged.energy;
+        self
+    }
 }
 
 /// Time spent in the paper's steps 5 and 6 (local solves) and 7 and 8 (transfers), one entry an instance.
@@ -213,6 +225,18 @@ pub fn exchange(
     start: Option<&[Vec<Rgb>]>,
     monitor: &Monitor,
 ) -> Outcome {
+    exchange_observed(nodes, method, goal, start, monitor, &Unobserved)
+}
+
+/// The same with somebody who sees every round, and may say that the light is good enough.
+pub fn exchange_observed(
+    nodes: &[Node],
+    method: Method,
+    goal: Goal,
+    start: Option<&[Vec<Rgb>]>,
+    monitor: &Monitor,
+    observer: &dyn Observer,
+) -> Outcome {
     let mut times = StepTimes::none(nodes.len());
     let groups = timed(&mut times.overhead.account, || groups(nodes));
     let mut whole = Whole::new(nodes);
@@ -221,7 +245,7 @@ pub fn exchange(
         let course = Course::new(group, method, goal, &mut times.overhead);
         let column_sums = course.column_sums();
         let start = start.map(|start| group.members.iter().flat_map(|&k| start[k].clone()).collect());
-        let outcome = course.run(start, goal, &mut times, monitor);
+        let outcome = course.run(start, goal, &mut times, monitor, observer);
         let without = method == Method::Auto && group.members.len() > 1 && outcome.coarse == 0;
         whole.spared.black_rows += group.waiting();
         whole.spared.coarse_spaces += usize::from(without);

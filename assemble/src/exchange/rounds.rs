@@ -6,7 +6,8 @@ use super::coarse::{Coarse, pays};
 use super::energy::{Columns, Energy};
 use super::groups::Group;
 use super::sweep::Sweep;
-use super::{Goal, Method, Overhead, StepTimes, is_shown, timed};
+use super::{Goal, Known, Method, Overhead, StepTimes, is_shown, timed};
+use crate::observer::{Observer, Passed};
 use equilux_bake::equilibrium::krylov::Space;
 use equilux_bake::equilibrium::{added, largest, subtract};
 use equilux_bake::monitor::Monitor;
@@ -116,6 +117,7 @@ impl<'a> Course<'a> {
         goal: Goal,
         times: &mut StepTimes,
         monitor: &Monitor,
+        observer: &dyn Observer,
     ) -> GroupOutcome {
         let is_warm = start.is_some();
         let mut state = self.begin(start);
@@ -123,32 +125,39 @@ impl<'a> Course<'a> {
         if is_warm {
             judged.error_bound = self.sharp_bound(&state, times);
         }
+        let is_last = |rounds: usize| rounds >= goal.rounds || monitor.stopped() || observer.enough();
         let mut converged = is_warm && judged.is_within(goal.error);
         let mut rounds: Vec<GroupRound> = Vec::new();
         let mut proved_before = f64::INFINITY;
-        while rounds.len() < goal.rounds && !converged && !monitor.stopped() {
+        let mut ends = converged || is_last(0);
+        while !ends {
             let start = Instant::now();
             self.advance(&mut state, times);
             judged = self.judge(&state, times);
             let settled = judged.is_rounded() || state.is_full();
-            let ends = rounds.len() + 1 == goal.rounds || monitor.stopped();
-            let mut stalled = false;
+            ends = is_last(rounds.len() + 1);
             if judged.is_within(goal.error) || settled || ends {
                 // What was tracked from round to round is computed anew before anything is said to be proved.
                 timed(&mut times.overhead.proving, || self.refresh(&mut state));
                 judged = self.judge(&state, times);
-                stalled = settled && judged.relative_bound() > 0.5 * proved_before;
+                let stalled = settled && judged.relative_bound() > 0.5 * proved_before;
                 proved_before = judged.relative_bound();
                 // All that rounding allows is what an error of zero asks for.
                 converged = judged.is_within(goal.error) || (stalled && goal.error == 0.0);
+                ends |= converged || stalled;
             }
             forget(&mut rounds);
             let radiosity = Some(state.radiosity.clone());
             rounds.push(GroupRound { judged, time: start.elapsed(), radiosity });
             monitor.advance(1);
-            if stalled {
-                break;
-            }
+            observer.round(&Passed {
+                instances: &self.group.members,
+                number: rounds.len(),
+                known: Known::default().with(&judged),
+                times,
+                is_last: ends,
+                radiosity: &state.radiosity,
+            });
         }
         if !(is_warm && rounds.is_empty()) {
             judged.error_bound = self.sharp_bound(&state, times);

@@ -72,14 +72,7 @@ impl Whole {
     }
 
     fn known<'a>(&'a self, of: impl Fn(&'a GroupOutcome) -> &'a Judged) -> Known {
-        let mut known = Known::default();
-        for judged in self.solved.iter().map(|(_, outcome)| of(outcome)) {
-            known.residual = judged.residual.into_iter().fold(known.residual, f64::max);
-            known.error_bound = judged.error_bound.into_iter().fold(known.error_bound, f64::max);
-            known.relative_bound = known.relative_bound.max(judged.relative_bound());
-            known.energy += judged.energy;
-        }
-        known
+        self.solved.iter().fold(Known::default(), |known, (_, outcome)| known.with(of(outcome)))
     }
 
     /// One vector of the scene from one of each group.
