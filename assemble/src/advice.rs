@@ -11,6 +11,7 @@ use crate::classic::whole;
 use crate::direct::with_direct;
 use crate::equation::Equation;
 use crate::exchange::{Outcome, exchange};
+use crate::observer::Unobserved;
 use crate::points::{Place, PointLight, light};
 use crate::run::Job;
 use equilux_bake::elements::ElementSize;
@@ -199,7 +200,7 @@ fn sample(job: &Job, scene: &Scene, store: &Store, places: &[Place], monitor: &M
         let remedy = "run the same command again: what was finished is in the cache";
         Error::new(&job.scene, "stopped before the settings were found", "a complete run", remedy)
     };
-    let equation = Equation::of(job, scene, prepare(scene, &job.preparation)?, store, monitor)?;
+    let equation = Equation::of(job, scene, prepare(scene, &job.preparation)?, store, monitor, &Unobserved)?;
     let elements = &equation.placed.world.elements;
     let nodes = equation.nodes();
     refuse_endless_light(&equation.placed, &nodes, &whole(&equation.driven), &job.scene)?;

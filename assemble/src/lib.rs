@@ -23,6 +23,8 @@ pub mod gather;
 pub mod gltf_export;
 pub mod hull;
 pub mod lightmap;
+#[cfg(feature = "cli")]
+pub mod live;
 pub mod observer;
 mod older;
 pub mod output_file;

@@ -1,7 +1,8 @@
 //! The command line of `assemble classic`.
 
 use super::{Job, Report, Way, run};
-use crate::cli::{Intensities, sky};
+use crate::cli::assembly::Intensities;
+use crate::cli::values::sky;
 use crate::gather::sky::Sky;
 use clap::{Args, ValueEnum};
 use equilux_bake::cli::options::element_size;

@@ -1,0 +1,92 @@
+//! Assembling for a person: with progress, once or again and again, with a page or without.
+
+use super::said;
+use crate::advice::advise;
+use crate::live::Live;
+use crate::observer::{Observer, Unobserved};
+use crate::report::Report;
+use crate::run::{Job, run_observed};
+use crate::watch::watch;
+use equilux_bake::cli::progress;
+use equilux_bake::monitor::Monitor;
+use std::sync::Arc;
+
+/// What is wanted.
+pub struct Wish {
+    /// What to assemble, and how.
+    pub job: Job,
+    /// The error that element size and tolerance are to be chosen for.
+    pub target_error: Option<f64>,
+    /// The port of a page that shows it, 0 for any.
+    pub live: Option<u16>,
+    /// Whether to print for machines.
+    pub json: bool,
+}
+
+/// Assemble, with a page if there is to be one; that page is then served on. Returns what is left to say.
+pub fn once(wish: &Wish, text: impl Fn(&Report) -> String) -> anyhow::Result<String> {
+    let monitor = progress::monitor_for_program();
+    let live = wish.live.map(|port| serve(port, false, &monitor)).transpose()?;
+    let report = assemble(wish, &monitor, live.as_ref())?;
+    let text = said(wish.json, &report, text);
+    let Some(live) = live.filter(|_| !monitor.stopped()) else { return Ok(text) };
+    print!("{text}");
+    eprintln!("all is written; the page stays at {} until Ctrl-C, or until it is closed there", live.url());
+    live.stay();
+    Ok(String::new())
+}
+
+/// Assemble again and again. Errors in the scene are printed, and it goes on.
+pub fn watched(wish: &Wish) -> anyhow::Result<String> {
+    let monitor = progress::monitor_for_program();
+    let live = wish.live.map(|port| serve(port, true, &monitor)).transpose()?;
+    let mut last_notes = Vec::new();
+    watch(&wish.job.scene, &wish.job.beside().collect::<Vec<_>>(), &monitor, |why| {
+        match assemble(wish, &monitor, live.as_ref()) {
+            Ok(report) => {
+                print!("{}", said(wish.json, &report, |report| short(why, report, &last_notes)));
+                last_notes = report.notes;
+            }
+            Err(error) => eprintln!("error: {error:#}"),
+        }
+    })?;
+    Ok(String::new())
+}
+
+fn serve(port: u16, watched: bool, monitor: &Arc<Monitor>) -> anyhow::Result<Live> {
+    let live = Live::start(port, watched, monitor)?;
+    eprintln!("live page: {}", live.url());
+    Ok(live)
+}
+
+fn assemble(wish: &Wish, monitor: &Arc<Monitor>, live: Option<&Live>) -> anyhow::Result<Report> {
+    let progress = progress::show(monitor);
+    let report = advised(wish, monitor, live.map_or(&Unobserved, Live::begin));
+    progress.finish();
+    if let Some(live) = live {
+        live.end(report.as_ref().map_err(ToString::to_string));
+    }
+    Ok(report?)
+}
+
+fn advised(wish: &Wish, monitor: &Monitor, observer: &dyn Observer) -> equilux_formats::Result<Report> {
+    let Some(target) = wish.target_error else { return run_observed(&wish.job, monitor, observer) };
+    let (job, advice) = advise(&wish.job, target, monitor)?;
+    Ok(Report { advice: Some(advice), ..run_observed(&job, monitor, observer)? })
+}
+
+/// The report in a line, with what is asked for or new.
+fn short(why: &str, report: &Report, last_notes: &[String]) -> String {
+    let baked = report.blocks.self_baked;
+    let mut text = format!(
+        "{why}: {baked} part{} baked, {} form factors computed, {} rounds, {:.2} s\n",
+        if baked == 1 { "" } else { "s" },
+        report.form_factors_computed,
+        report.rounds.len(),
+        report.seconds.total
+    );
+    let notes = report.notes.iter().filter(|note| !last_notes.contains(note));
+    let lines = report.explained.iter().cloned().chain(notes.map(|note| format!("note: {note}")));
+    lines.for_each(|line| text += &(line + "\n"));
+    text
+}

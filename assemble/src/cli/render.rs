@@ -1,0 +1,68 @@
+//! A picture on the command line.
+
+use super::assembly::Assembly;
+use super::values;
+use crate::render::{Eye, Shading, Shot};
+use crate::run::{Job, Pictures};
+use clap::{Args, ValueEnum};
+use glam::DVec3;
+use std::path::PathBuf;
+
+/// A picture.
+#[derive(Args)]
+pub struct Render {
+    #[command(flatten)]
+    pub assembly: Assembly,
+    /// The scene's camera of this name, or of this number from 1 [default: the first, or one that shows everything]
+    #[arg(long, value_name = "NAME|N")]
+    camera: Option<String>,
+    /// Look from this point, metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true, requires = "to", conflicts_with = "camera")]
+    from: Option<DVec3>,
+    /// Look at this point, metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::point, allow_hyphen_values = true, requires = "from")]
+    to: Option<DVec3>,
+    /// Vertical field of view of --from, degrees
+    #[arg(long, value_name = "DEGREES", default_value = "45", value_parser = values::field_of_view)]
+    fov: f64,
+    /// Width and height, pixels [default: 720 high, and as wide as the camera says]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    size: Option<[u32; 2]>,
+    /// How light is drawn
+    #[arg(long, value_name = "HOW", default_value = "smooth")]
+    shading: Shaded,
+    /// So many stops brighter than what suits the scene, or darker
+    #[arg(long, value_name = "STOPS", default_value = "0", value_parser = values::stops, allow_hyphen_values = true)]
+    exposure: f64,
+    /// Also show in false colours how far irradiance is from that of this table: truth.csv of a scene, or what --elements or
+    /// --points wrote
+    #[arg(long, value_name = "FILE.csv")]
+    against: Option<PathBuf>,
+}
+
+/// The shading's name on the command line.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum Shaded {
+    /// Each element in one colour
+    Flat,
+    /// Interpolated between elements that see each other
+    Smooth,
+}
+
+impl Render {
+    /// The job with this picture and no other.
+    pub fn job(&self) -> Job {
+        let eye = match (&self.camera, self.from, self.to) {
+            (Some(name), ..) => Eye::Camera(name.clone()),
+            (None, Some(from), Some(to)) => Eye::Points { from, to, field_of_view: self.fov.to_radians() },
+            _ => Eye::Scene,
+        };
+        let shading = match self.shading {
+            Shaded::Flat => Shading::Flat,
+            Shaded::Smooth => Shading::Smooth,
+        };
+        let (size, stops, against) = (self.size, self.exposure, self.against.clone());
+        let shot = Some(Shot { eye, size, shading, stops, against });
+        Job { shot, pictures: Pictures::None, ..self.assembly.job() }
+    }
+}

@@ -1,0 +1,233 @@
+//! What a run has published and viewers may see. In go the run's results as they come, through [`Observer`]; out come snapshots
+//! and news. The run waits for nobody: it copies its light at most every [`PACE`], and viewers do the rest on their thread.
+
+use super::field::{Field, Light, Snapshot, Values, computed, row_sums};
+use super::history::{History, Point};
+use super::model::Model;
+use super::status::{Phase, Status};
+use crate::coupling::Coupled;
+use crate::exchange::{Outcome, StepTimes};
+use crate::observer::{Observer, Passed};
+use crate::placed::Placed;
+use crate::report::{Report, Seconds};
+use crate::steps;
+use equilux_bake::oven::Baked;
+use equilux_bake::prepare::Prepared;
+use equilux_formats::{Camera, Optics, Rgb, Scene};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+use std::time::{Duration, Instant};
+use tokio::sync::watch;
+
+/// The least time from one published light to the next.
+pub const PACE: Duration = Duration::from_millis(100);
+
+/// What a run has published.
+pub struct Board {
+    state: Mutex<State>,
+    /// Tells that there is something new to fetch. Whoever listens is a viewer.
+    changed: watch::Sender<()>,
+    enough: AtomicBool,
+}
+
+/// All that viewers may see.
+#[derive(Default)]
+pub struct State {
+    /// In words.
+    pub status: Status,
+    /// Changes with the status.
+    pub status_number: u64,
+    /// The curve.
+    pub history: History,
+    /// The scene, once it is placed.
+    pub model: Option<Arc<Model>>,
+    light: Option<Light>,
+    light_number: u32,
+    row_sums: Arc<Vec<f32>>,
+    computed: Arc<Vec<f32>>,
+    group: usize,
+    began: Option<Instant>,
+    published: Option<Instant>,
+}
+
+impl Board {
+    /// Nothing yet. `watched`: whether run follows run.
+    pub fn new(watched: bool) -> Self {
+        let status = Status { watched, ..Status::default() };
+        Self {
+            state: Mutex::new(State { status, ..State::default() }),
+            changed: watch::Sender::new(()),
+            enough: AtomicBool::new(false),
+        }
+    }
+
+    /// A look at the state; the run may wait for it, so be quick.
+    pub fn state(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+
+    /// Something to wait for news with.
+    pub fn viewer(&self) -> watch::Receiver<()> {
+        self.changed.subscribe()
+    }
+
+    /// Number of viewers' requests that wait for news.
+    pub fn viewers(&self) -> usize {
+        self.changed.receiver_count()
+    }
+
+    /// Another run begins. What the last one published stays to be seen until there is something new.
+    pub fn begin(&self) {
+        self.enough.store(false, Ordering::Relaxed);
+        self.tell(|state| {
+            let Status { run, placed, watched, .. } = state.status;
+            state.status = Status { run: run + 1, placed, watched, ..Status::default() };
+            state.history = History::default();
+            (state.group, state.began) = (0, None);
+        });
+    }
+
+    /// A run has ended.
+    pub fn end(&self, outcome: Result<&Report, String>) {
+        self.tell(|state| match outcome {
+            Ok(report) => state.status.end(report),
+            Err(error) => {
+                state.status.phase = Phase::Failed;
+                state.status.error = Some(error);
+            }
+        });
+    }
+
+    /// End the exchange after its round. False if there is none.
+    pub fn stop(&self) -> bool {
+        let is_exchange = self.state().status.phase == Phase::Exchange;
+        if is_exchange {
+            self.enough.store(true, Ordering::Relaxed);
+            self.tell(|state| state.status.stopping = true);
+        }
+        is_exchange
+    }
+
+    /// A field that is newer than this, if there is one.
+    pub fn newer(&self, field: Field, than: u32) -> Option<Snapshot> {
+        let state = self.state();
+        let model = state.model.as_ref()?;
+        let numbers = |numbers: &Arc<Vec<f32>>| {
+            state.began.map(|_| (state.status.run, Values::Numbers(Arc::clone(numbers))))
+        };
+        let (number, values) = match field {
+            Field::RowSums => numbers(&state.row_sums)?,
+            Field::Computed => numbers(&state.computed)?,
+            _ => (state.light_number, Values::Light(state.light.clone()?, field)),
+        };
+        (number > than).then_some(Snapshot { run: model.run, number, values })
+    }
+
+    fn tell(&self, change: impl FnOnce(&mut State)) {
+        let mut state = self.state();
+        change(&mut state);
+        state.status_number += 1;
+        drop(state);
+        self.changed.send_replace(());
+    }
+}
+
+impl State {
+    /// Put the light of some instances into that of the scene.
+    fn publish(&mut self, instances: &[usize], radiosity: &[Rgb]) {
+        let Some(light) = &mut self.light else { return };
+        light.round = self.history.last().map_or(0, |last| last.round);
+        let all = Arc::make_mut(&mut light.radiosity);
+        let mut rest = radiosity;
+        for &instance in instances {
+            let place = light.model.elements_of(instance);
+            let (own, others) = rest.split_at(place.len());
+            all[place].copy_from_slice(own);
+            rest = others;
+        }
+        self.light_number += 1;
+        self.published = Some(Instant::now());
+    }
+
+    fn is_due(&self) -> bool {
+        self.published.is_none_or(|last| last.elapsed() >= PACE)
+    }
+}
+
+impl Observer for Board {
+    fn prepared(&self, scene: &Scene, prepared: &Prepared) {
+        self.tell(|state| state.status.prepare(scene, prepared));
+    }
+
+    fn baked(&self, number: usize, part: &Baked) {
+        self.tell(|state| state.status.bake(number, part));
+    }
+
+    fn placed(&self, placed: &Placed, cameras: &[Camera]) {
+        let run = self.state().status.run;
+        let model = Arc::new(Model::new(run, placed, cameras));
+        self.tell(|state| {
+            state.model = Some(model);
+            state.light = None;
+            state.status.placed = run;
+            state.status.phase = Phase::Coupling;
+        });
+    }
+
+    fn coupled(&self, instance: usize, coupled: &Coupled) {
+        self.tell(|state| state.status.couple(instance, coupled));
+    }
+
+    fn coupled_all(&self, placed: &Placed, coupled: &[Coupled], optics: &Optics) {
+        let (row_sums, computed) = (row_sums(placed, coupled), computed(placed, coupled));
+        let seconds = steps::seconds(placed, coupled, &StepTimes::none(coupled.len()));
+        let optics = Arc::new(optics.clone());
+        self.tell(|state| {
+            (state.row_sums, state.computed) = (Arc::new(row_sums), Arc::new(computed));
+            (state.status.seconds, state.status.phase) = (seconds, Phase::Exchange);
+            let radiosity = Arc::new(vec![[0.0; 3]; optics.emission.len()]);
+            let model = state.model.clone();
+            state.light = model.map(|model| Light { model, round: 0, radiosity, irradiance: None, optics });
+            (state.began, state.published) = (Some(Instant::now()), None);
+        });
+    }
+
+    fn round(&self, passed: &Passed) {
+        let mut state = self.state();
+        state.group += usize::from(passed.number == 1);
+        let point = Point {
+            group: state.group,
+            round: passed.number,
+            seconds: state.began.map_or(0.0, |began| began.elapsed().as_secs_f64()),
+            bound: passed.known.error_bound,
+            relative: passed.known.relative_bound,
+            residual: passed.known.residual,
+        };
+        state.history.add(point);
+        let is_due = state.is_due();
+        if is_due || passed.is_last {
+            state.publish(passed.instances, passed.radiosity);
+            let Seconds { step5, step6, step7, step8, .. } = steps::rounds(passed.times);
+            state.status.seconds = Seconds { step5, step6, step7, step8, ..state.status.seconds.clone() };
+        }
+        drop(state);
+        if is_due {
+            self.changed.send_replace(());
+        }
+    }
+
+    fn enough(&self) -> bool {
+        self.enough.load(Ordering::Relaxed)
+    }
+
+    fn settled(&self, outcome: &Outcome) {
+        self.tell(|state| {
+            let all: Vec<usize> = (0..state.status.instances.len()).collect();
+            state.publish(&all, &outcome.radiosity);
+            if let Some(light) = &mut state.light {
+                light.irradiance = Some(Arc::new(outcome.irradiance.clone()));
+            }
+            state.status.phase = Phase::Writing;
+        });
+    }
+}

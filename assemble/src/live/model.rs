@@ -1,0 +1,114 @@
+//! The scene that viewers turn around. In go the parts in their places; out come bytes of their elements, and the eye that
+//! the pictures have.
+
+use crate::camera::View;
+use crate::exposure::Exposure;
+use crate::placed::Placed;
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_formats::{Camera, Element, Rgb};
+use glam::{DVec2, DVec3, UVec2, uvec2};
+use serde_json::json;
+use std::ops::Range;
+use std::sync::OnceLock;
+
+/// Rays that ask what a picture shows, to expose it; its exposure itself takes the rays of all pixels.
+const RAYS: UVec2 = uvec2(96, 72);
+
+/// Placed elements.
+pub struct Model {
+    /// The run that placed them.
+    pub run: u32,
+    elements: Vec<Element>,
+    /// The elements of each instance.
+    places: Vec<Range<usize>>,
+    cameras: Vec<Camera>,
+    seen: OnceLock<Seen>,
+}
+
+/// What the eye of the pictures sees.
+struct Seen {
+    view: View,
+    /// How far away that is which the middle of the picture shows, metres.
+    depth: f64,
+    /// The elements that rays meet.
+    elements: Vec<usize>,
+}
+
+impl Model {
+    /// A copy of what is placed.
+    pub fn new(run: u32, placed: &Placed, cameras: &[Camera]) -> Self {
+        Self {
+            run,
+            elements: placed.world.elements.clone(),
+            places: (0..placed.instances.len()).map(|k| placed.world.elements_of(k)).collect(),
+            cameras: cameras.to_vec(),
+            seen: OnceLock::new(),
+        }
+    }
+
+    /// The elements of an instance.
+    pub fn elements_of(&self, instance: usize) -> Range<usize> {
+        self.places[instance].clone()
+    }
+
+    /// The exposure of the pictures.
+    pub fn exposure(&self, light: &[Rgb], emission: &[Rgb]) -> Exposure {
+        Exposure::choose(|| self.seen().elements.iter().copied(), light, emission)
+    }
+
+    /// For viewers: the length of a JSON text (u32) and that text, filled up with blanks to a multiple of four; then for each
+    /// element four corners as three f32, a triangle's last one twice, metres from the centre; then for each element its
+    /// instance, u32. All little-endian.
+    pub fn bytes(&self) -> Vec<u8> {
+        let corners = || self.elements.iter().flat_map(|element| element.corners.as_slice().iter().copied());
+        let low = corners().fold(DVec3::INFINITY, DVec3::min);
+        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let centre = (low + high) / 2.0;
+        let Seen { view, depth, .. } = self.seen();
+        let head = json!({
+            "run": self.run,
+            "elements": self.elements.len(),
+            "centre": centre.to_array(),
+            "radius": (high - low).length() / 2.0,
+            "eye": (view.position - centre).to_array(),
+            "target": (view.position - view.back * *depth - centre).to_array(),
+            "up": view.up.to_array(),
+            "fov": view.vertical_fov,
+            "aspect": f64::from(view.width) / f64::from(view.height),
+        });
+        let mut head = head.to_string().into_bytes();
+        head.resize(head.len().next_multiple_of(4), b' ');
+        let mut bytes = (head.len() as u32).to_le_bytes().to_vec();
+        bytes.extend(head);
+        for element in &self.elements {
+            let corners = element.corners.as_slice();
+            let four = (0..4).map(|i| corners[i.min(corners.len() - 1)] - centre);
+            bytes.extend(four.flat_map(|p| p.as_vec3().to_array()).flat_map(f32::to_le_bytes));
+        }
+        for (instance, place) in self.places.iter().enumerate() {
+            bytes.extend(place.clone().flat_map(|_| (instance as u32).to_le_bytes()));
+        }
+        bytes
+    }
+
+    /// Found when it is first asked for: not by the run, which has better things to do.
+    fn seen(&self) -> &Seen {
+        self.seen.get_or_init(|| {
+            let index = RayIndex::new(&self.elements);
+            let view = View::of_scene(&self.cameras, &self.elements, &index);
+            let depth = index.first_front(view.position, -view.back).map(|hit| hit.distance);
+            let depth = depth.unwrap_or_else(|| self.middle_depth(&view));
+            let pixel = DVec2::new(view.width.into(), view.height.into()) / RAYS.as_dvec2();
+            let points = (0..RAYS.x * RAYS.y).map(|i| uvec2(i % RAYS.x, i / RAYS.x).as_dvec2() + 0.5);
+            let meets = |point: DVec2| index.first_front(view.position, view.ray(point * pixel));
+            let elements = points.filter_map(|point| Some(meets(point)?.element)).collect();
+            Seen { depth, elements, view }
+        })
+    }
+
+    /// How far away the elements are on average, where the middle of the picture shows none.
+    fn middle_depth(&self, view: &View) -> f64 {
+        let depths = self.elements.iter().map(|e| (view.position - e.centroid).dot(view.back));
+        (depths.sum::<f64>() / self.elements.len() as f64).max(1e-3)
+    }
+}

@@ -1,0 +1,223 @@
+//! The page's server. In go requests; out come the page's files, snapshots of fields, and news as server-sent events.
+//!
+//! Each viewer has a connection of its own and fetches a field when it has shown the last: a slow one skips rounds, and nobody
+//! waits for it.
+
+use super::board::{Board, PACE};
+use super::field::Field;
+use super::guard::Guard;
+use super::history::Point;
+use super::status::Status;
+use axum::Router;
+use axum::extract::{Path, Query, Request, State};
+use axum::http::{HeaderName, HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::sse::{Event, KeepAlive, Sse};
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use equilux_bake::monitor::Monitor;
+use futures_util::Stream;
+use futures_util::stream::unfold;
+use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::task::spawn_blocking;
+use tokio::time::{Instant, sleep, timeout_at};
+
+/// What requests are answered from.
+#[derive(Clone)]
+pub struct Site {
+    /// What the run has published.
+    pub board: Arc<Board>,
+    /// The run's progress.
+    pub monitor: Arc<Monitor>,
+    /// Who may ask.
+    pub guard: Guard,
+}
+
+/// A request for something new is answered after this long even if there is nothing.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// On every answer: nothing is loaded from elsewhere, nothing is kept, and the token in the address is told to nobody.
+const HEADERS: [(HeaderName, &str); 6] = [
+    (
+        header::CONTENT_SECURITY_POLICY,
+        "default-src 'none'; script-src 'self'; connect-src 'self'; style-src 'self'; img-src 'self' data:; \
+         base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ),
+    (header::CACHE_CONTROL, "no-store"),
+    (header::REFERRER_POLICY, "same-origin"),
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+    (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
+];
+
+/// The page's files: name, type and text.
+const FILES: [(&str, &str, &str); 8] = [
+    ("", "text/html; charset=utf-8", include_str!("page.html")),
+    ("page.css", "text/css", include_str!("page.css")),
+    ("page.js", "text/javascript", include_str!("page.js")),
+    ("scene.js", "text/javascript", include_str!("scene.js")),
+    ("orbit.js", "text/javascript", include_str!("orbit.js")),
+    ("curve.js", "text/javascript", include_str!("curve.js")),
+    ("three.module.min.js", "text/javascript", include_str!("vendor/three.module.min.js")),
+    ("three.core.min.js", "text/javascript", include_str!("vendor/three.core.min.js")),
+];
+
+/// All that is served. Whatever does not begin with the token is refused.
+pub fn router(site: Site) -> Router {
+    let path = |name: &str| site.guard.path(name);
+    let mut router = Router::new();
+    for (name, kind, text) in FILES {
+        router =
+            router.route(&path(name), get(move || async move { ([(header::CONTENT_TYPE, kind)], text) }));
+    }
+    router
+        .route(&path("events"), get(events))
+        .route(&path("model"), get(model))
+        .route(&path("field/{field}"), get(field))
+        .route(&path("stop"), post(stop))
+        .route(&path("close"), post(close))
+        .fallback(|| async { (StatusCode::FORBIDDEN, "the address lacks the right token") })
+        .layer(middleware::from_fn_with_state(site.clone(), guarded))
+        .with_state(site)
+}
+
+async fn guarded(State(site): State<Site>, request: Request, next: Next) -> Response {
+    let mut response = match site.guard.refuses(request.method(), request.headers()) {
+        Some(reason) => (StatusCode::FORBIDDEN, reason).into_response(),
+        None => next.run(request).await,
+    };
+    for (name, value) in HEADERS {
+        response.headers_mut().insert(name, HeaderValue::from_static(value));
+    }
+    response
+}
+
+async fn model(State(site): State<Site>) -> Response {
+    let model = site.board.state().model.clone();
+    match model {
+        Some(model) => bytes(move || model.bytes()).await,
+        None => StatusCode::NO_CONTENT.into_response(),
+    }
+}
+
+/// What a viewer has already.
+#[derive(Deserialize)]
+struct Known {
+    /// The number of the newest snapshot; 0 for none.
+    after: u32,
+}
+
+/// A field newer than what the viewer has, as soon as there is one.
+async fn field(State(site): State<Site>, Path(field): Path<Field>, Query(known): Query<Known>) -> Response {
+    let (mut changes, end) = (site.board.viewer(), Instant::now() + PATIENCE);
+    loop {
+        if let Some(snapshot) = site.board.newer(field, known.after) {
+            return bytes(move || snapshot.bytes()).await;
+        }
+        if !matches!(timeout_at(end, changes.changed()).await, Ok(Ok(()))) {
+            return StatusCode::NO_CONTENT.into_response();
+        }
+    }
+}
+
+/// Bytes that take a while to make, while others are served.
+async fn bytes(make: impl FnOnce() -> Vec<u8> + Send + 'static) -> Response {
+    match spawn_blocking(make).await {
+        Ok(bytes) => ([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response(),
+        Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),
+    }
+}
+
+async fn stop(State(site): State<Site>) -> Response {
+    if site.board.stop() {
+        StatusCode::NO_CONTENT.into_response()
+    } else {
+        (StatusCode::CONFLICT, "there is no exchange to stop now").into_response()
+    }
+}
+
+/// End the program, if no run is under way.
+async fn close(State(site): State<Site>) -> Response {
+    let phase = site.board.state().status.phase;
+    if phase.is_over() {
+        site.monitor.stop();
+        StatusCode::NO_CONTENT.into_response()
+    } else {
+        (StatusCode::CONFLICT, "the run is not over").into_response()
+    }
+}
+
+/// What is new to a viewer, as JSON.
+#[derive(Serialize)]
+struct News {
+    /// The run, if anything of it but its light is new.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    status: Option<Status>,
+    /// Points of the curve that follow those already sent.
+    points: Vec<Point>,
+    /// The newest round.
+    now: Option<Point>,
+    /// The paper's steps 5 to 8 by now.
+    steps: [f64; 4],
+    /// What is being done, steps done, and steps in all.
+    stage: (String, u64, u64),
+}
+
+/// What a viewer has been sent.
+#[derive(Default, PartialEq, Clone)]
+struct Sent {
+    run: u32,
+    status: Option<u64>,
+    points: usize,
+    now: Option<Point>,
+    stage: Option<(String, u64, u64)>,
+}
+
+async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
+    // Held as long as the viewer is there: it counts as one.
+    let viewer = site.board.viewer();
+    let stream = unfold((site, Sent::default(), viewer), |(site, mut sent, viewer)| async move {
+        loop {
+            if sent.status.is_some() {
+                sleep(PACE).await;
+            }
+            if let Some(news) = news(&site, &mut sent) {
+                let event = Event::default().json_data(news).expect("news are plain data");
+                return Some((Ok(event), (site, sent, viewer)));
+            }
+        }
+    });
+    Sse::new(stream).keep_alive(KeepAlive::default())
+}
+
+/// What is new since, if anything is.
+fn news(site: &Site, sent: &mut Sent) -> Option<News> {
+    let (stage, done) = site.monitor.now();
+    let state = site.board.state();
+    let run = state.status.run;
+    let from = if sent.run == run { sent.points } else { 0 };
+    let points = state.history.since(from).to_vec();
+    let now = Sent {
+        run,
+        status: Some(state.status_number),
+        points: from + points.len(),
+        now: state.history.last(),
+        stage: Some((stage.what, done, stage.total)),
+    };
+    if now == *sent {
+        return None;
+    }
+    let seconds = &state.status.seconds;
+    let news = News {
+        status: (sent.status != now.status).then(|| state.status.clone()),
+        points,
+        now: now.now,
+        steps: [seconds.step5, seconds.step6, seconds.step7, seconds.step8],
+        stage: now.stage.clone().expect("just told"),
+    };
+    *sent = now;
+    Some(news)
+}
