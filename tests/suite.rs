@@ -6,6 +6,7 @@ mod cli;
 mod crash;
 mod lightmaps;
 mod lights;
+mod live;
 mod parts;
 mod physics;
 mod stiff;

@@ -9,14 +9,13 @@ use equilux_bake::gltf_import::import_scene;
 use equilux_formats::Scene;
 use equilux_tests::model::Node;
 use equilux_tests::rooms::furnished;
+use equilux_tests::script::script;
 use equilux_tests::workshop::Workshop;
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::path::PathBuf;
 
 /// Furnished, with a second crate that shares the first one's mesh.
 fn nodes() -> Vec<Node> {
@@ -25,39 +24,6 @@ fn nodes() -> Vec<Node> {
     (second.name, second.at) = ("second crate".into(), DVec3::new(2.5, 0.0, 0.5));
     nodes.push(second);
     nodes
-}
-
-/// Runs a script of `tests/viewer` with JSON in and out; none, and a line that says why, if it cannot be run.
-fn script(name: &str, input: &Value) -> Option<Value> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("viewer");
-    let missing = if !folder.join("node_modules").exists() {
-        Some("`npm ci` was not run in tests/viewer".to_owned())
-    } else if Command::new("node").arg("--version").stdout(Stdio::null()).status().is_err() {
-        Some("there is no `node`".to_owned())
-    } else {
-        None
-    };
-    if let Some(missing) = missing {
-        println!("skipped: {missing}");
-        return None;
-    }
-    let mut child = Command::new("node")
-        .arg(folder.join(name))
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("node starts");
-    let mut stdin = child.stdin.take().expect("a pipe");
-    stdin.write_all(input.to_string().as_bytes()).expect("node reads");
-    drop(stdin);
-    let output = child.wait_with_output().expect("node ends");
-    let text = String::from_utf8_lossy(&output.stdout);
-    let answer: Value = serde_json::from_str(&text).unwrap_or_else(|_| panic!("{name} said '{text}'"));
-    if let Some(reason) = answer["skipped"].as_str() {
-        println!("skipped: {reason}");
-        return None;
-    }
-    Some(answer)
 }
 
 fn models(workshop: &Workshop) -> [PathBuf; 3] {

@@ -13,6 +13,7 @@ pub mod model;
 pub mod modular;
 pub mod program;
 pub mod rooms;
+pub mod script;
 pub mod shapes;
 pub mod table;
 pub mod truth;
