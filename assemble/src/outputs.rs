@@ -10,7 +10,7 @@ use crate::exposure::Exposure;
 use crate::lightmap::atlas::Atlas;
 use crate::lightmap::light::TexelLight;
 use crate::lightmap::{self, Lightmap, Saved};
-use crate::picture::{shade, wireframe, write_png};
+use crate::picture::{shade, strip, wireframe, write_png};
 use crate::points::{self, Place};
 use crate::render::{self, Reference};
 use crate::run::{Job, Pictures};
@@ -25,6 +25,9 @@ use std::time::{Duration, Instant};
 
 /// The file name of the lit model.
 pub const RESULT: &str = "result.glb";
+
+/// So many rounds stand beside the end in one picture.
+const FIRST_ROUNDS: usize = 3;
 
 /// What there is to show.
 pub struct Light<'a> {
@@ -192,6 +195,11 @@ fn draw_all(
         let edges = folder.join("wireframe.png");
         write_png(&edges, &wireframe(canvas, &light.equation.placed.world.elements))?;
         written.push(edges);
+        let first = shown.iter().take(FIRST_ROUNDS).map(|(_, radiosity)| *radiosity);
+        let all = first.chain([light.outcome.radiosity.as_slice()]);
+        let rounds = folder.join("rounds.png");
+        write_png(&rounds, &strip(&all.map(|b| shade(canvas, b, exposure)).collect::<Vec<_>>()))?;
+        written.push(rounds);
     }
     let mut lines: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
     if let Some((last, _)) = shown.last() {

@@ -7,6 +7,7 @@ use equilux_formats::{Element, Result, Rgb};
 use glam::{DVec2, DVec3};
 use image::RgbImage;
 use image::codecs::png::PngEncoder;
+use image::imageops::{self, FilterType};
 use std::io;
 use std::path::Path;
 
@@ -16,6 +17,8 @@ pub const BACKGROUND: Rgb = [0.02; 3];
 const PAPER: Rgb = [1.0; 3];
 const SURFACE: Rgb = [0.85; 3];
 const LINE: Rgb = [0.01; 3];
+/// Between pictures that stand side by side, pixels.
+const GAP: u32 = 6;
 /// Half the width of a line between two elements, pixels.
 const HALF_LINE: f64 = 0.7;
 
@@ -32,6 +35,24 @@ pub fn wireframe(canvas: &Canvas, elements: &[Element]) -> RgbImage {
         let corners = elements[element].corners.as_slice();
         if edge_distance(canvas, corners, point) < HALF_LINE { LINE } else { SURFACE }
     })
+}
+
+/// Pictures of one size side by side, at half their size.
+pub fn strip(pictures: &[RgbImage]) -> RgbImage {
+    let small: Vec<RgbImage> = pictures
+        .iter()
+        .map(|picture| {
+            let [width, height] = [picture.width(), picture.height()].map(|side| (side / 2).max(1));
+            imageops::resize(picture, width, height, FilterType::Triangle)
+        })
+        .collect();
+    let (width, height) = small.first().map_or((1, 1), RgbImage::dimensions);
+    let mut strip =
+        RgbImage::from_pixel((width + GAP) * small.len() as u32 - GAP, height, image::Rgb([255; 3]));
+    for (place, picture) in small.iter().enumerate() {
+        imageops::replace(&mut strip, picture, i64::from(width + GAP) * place as i64, 0);
+    }
+    strip
 }
 
 /// Distance from an image point inside a convex polygon's picture to the nearest of its edges, pixels.

@@ -3,9 +3,9 @@
 //! `cargo bench -p equilux-tests --bench live -- [ROOMS] [ELEMENT SIZE] [PAIRS] [TOLERANCE]`
 //! Lights are at most as many as rounds: a large tolerance makes these quick.
 
-use equilux_assemble::exchange::Method;
+use equilux_assemble::exchange::{Known, Method, StepTimes};
 use equilux_assemble::live::Live;
-use equilux_assemble::observer::Unobserved;
+use equilux_assemble::observer::{Observer, Passed, Unobserved};
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
 use equilux_assemble::run::{Job, Pictures, run_observed};
@@ -20,7 +20,7 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 fn main() {
     let numbers: Vec<f64> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
@@ -44,6 +44,7 @@ fn main() {
         "alone", "viewed", "alone", "viewed", "rounds", "lights"
     );
     let mut slower = Vec::new();
+    let mut fast = (0.0, 0.0);
     for pair in 0..pairs {
         // Whoever comes second must not always be the same.
         let [alone, viewed] = if pair % 2 == 0 {
@@ -61,6 +62,7 @@ fn main() {
             viewed.rounds as f64 / viewed.exchange,
             viewed.lights as f64 / viewed.exchange
         );
+        fast = viewed.fast;
         slower.push((viewed.seconds / alone.seconds - 1.0, viewed.cpu / alone.cpu - 1.0));
     }
     let median = |of: fn(&(f64, f64)) -> f64| {
@@ -72,6 +74,10 @@ fn main() {
         "median of {pairs} pairs: the run takes {:+.1} % longer; with server and viewer it takes {:+.1} % more CPU time",
         median(|pair| pair.0),
         median(|pair| pair.1)
+    );
+    println!(
+        "rounds that take nothing: {:.1} lights a second; telling one takes {:.1} µs on average",
+        fast.0, fast.1
     );
 }
 
@@ -87,6 +93,8 @@ struct Measured {
     cpu: f64,
     /// Lights that the viewer has got.
     lights: usize,
+    /// Of rounds that take nothing: lights a second, and microseconds to tell one.
+    fast: (f64, f64),
 }
 
 fn measured(job: &Job, is_viewed: bool) -> Measured {
@@ -101,6 +109,8 @@ fn measured(job: &Job, is_viewed: bool) -> Measured {
     let report: Report = run_observed(job, &monitor, live.as_ref().map_or(&Unobserved, Live::begin))
         .unwrap_or_else(|error| panic!("{error}"));
     let (seconds, cpu) = (start.elapsed().as_secs_f64(), cpu_seconds() - cpu);
+    let got = lights.load(Ordering::Relaxed);
+    let fast = live.as_ref().map_or((0.0, 0.0), |live| fast_rounds(live.begin(), &report, &lights));
     over.store(true, Ordering::Relaxed);
     if let Some(live) = &live {
         live.end(Ok(&report));
@@ -112,8 +122,29 @@ fn measured(job: &Job, is_viewed: bool) -> Measured {
         seconds,
         exchange: report.rounds.iter().map(|round| round.seconds).sum(),
         cpu,
-        lights: lights.load(Ordering::Relaxed),
+        lights: got,
+        fast,
     }
+}
+
+/// Tells of rounds as fast as that can be, of a scene that has been placed.
+fn fast_rounds(observer: &dyn Observer, report: &Report, lights: &AtomicUsize) -> (f64, f64) {
+    let instances: Vec<usize> = (0..report.instances).collect();
+    let (radiosity, times) = (vec![[1.0; 3]; report.elements], StepTimes::none(report.instances));
+    let (start, before, mut number) = (Instant::now(), lights.load(Ordering::Relaxed), 0);
+    while start.elapsed() < Duration::from_secs(2) {
+        number += 1;
+        observer.round(&Passed {
+            instances: &instances,
+            number,
+            known: Known::default(),
+            times: &times,
+            is_last: false,
+            radiosity: &radiosity,
+        });
+    }
+    let seconds = start.elapsed().as_secs_f64();
+    ((lights.load(Ordering::Relaxed) - before) as f64 / seconds, 1e6 * seconds / number as f64)
 }
 
 /// Fetches lights until the run is over.

@@ -6,6 +6,7 @@ mod interrupt;
 mod json;
 mod outputs;
 mod plan;
+mod render;
 mod usage;
 #[cfg(unix)]
 mod watch;

@@ -7,6 +7,7 @@
 
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Element, Rgb};
+use glam::DVec3;
 use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
@@ -28,7 +29,11 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
     let tree = RTree::bulk_load(corners.collect());
     let of_element = |(number, element): (usize, &Element)| {
         let size = element.area.sqrt();
-        let is_buried = |number: usize| irradiance[number] == [0.0; 3];
+        let is_buried = |number: usize| {
+            let element = &elements[number];
+            let above = || index.first_hit(lifted(element), element.normal);
+            irradiance[number] == [0.0; 3] && above().is_some_and(|hit| !hit.front)
+        };
         let joins = |other: usize| {
             let sees = || is_buried(number) || index.sees(lifted(element), lifted(&elements[other]));
             let is_alike = || elements[other].normal.dot(element.normal) >= SMOOTH;
@@ -54,7 +59,7 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
     elements.par_iter().enumerate().map(of_element).collect()
 }
 
-fn lifted(element: &Element) -> glam::DVec3 {
+fn lifted(element: &Element) -> DVec3 {
     element.centroid + element.normal * (ABOVE * element.area.sqrt())
 }
 
@@ -66,4 +71,63 @@ fn mean(values: impl Iterator<Item = Rgb>) -> Option<Rgb> {
         count += 1.0;
     }
     (count > 0.0).then(|| sum.map(|sum| sum / count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use equilux_formats::{Corners, FaceId, MaterialId};
+
+    /// A square at `corner` that spans `u` and `v`, its front towards u × v.
+    fn square(corner: DVec3, u: DVec3, v: DVec3) -> Element {
+        Element::new(
+            Corners::quad([corner, corner + u, corner + u + v, corner + v]),
+            MaterialId(0),
+            FaceId(0),
+        )
+    }
+
+    /// A floor of four by two squares that look up; its light rises from 1 by 1 a square along x.
+    fn floor() -> (Vec<Element>, Vec<Rgb>) {
+        let squares = (0..8).map(|k| (f64::from(k % 4), f64::from(k / 4)));
+        let at = |(x, z)| square(DVec3::new(x, 0.0, z), DVec3::Z, DVec3::X);
+        (squares.clone().map(at).collect(), squares.map(|(x, _)| [x + 1.0; 3]).collect())
+    }
+
+    /// The values of the corners at x = 2 of the squares on either side of it.
+    fn at_two(elements: &[Element], irradiance: &[Rgb]) -> [Vec<f64>; 2] {
+        let values = corner_irradiance(elements, &RayIndex::new(elements), irradiance);
+        let of = |element: usize| {
+            let corners = elements[element].corners.as_slice().iter().zip(values[element]);
+            corners.filter(|(corner, _)| corner.x == 2.0).map(|(_, value)| value[0]).collect()
+        };
+        [of(1), of(2)]
+    }
+
+    #[test]
+    fn neighbours_meet_half_way() {
+        let (elements, irradiance) = floor();
+        assert_eq!(at_two(&elements, &irradiance), [vec![2.5, 2.5], vec![2.5, 2.5]]);
+    }
+
+    #[test]
+    fn light_does_not_leak_below_a_wall() {
+        let (mut elements, mut irradiance) = floor();
+        elements.push(square(DVec3::new(2.0, 0.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::Z));
+        irradiance.push([7.0; 3]);
+        assert_eq!(at_two(&elements, &irradiance), [vec![2.0, 2.0], vec![3.0, 3.0]]);
+    }
+
+    #[test]
+    fn what_lies_below_a_crate_takes_the_light_around_and_gives_none() {
+        let (mut elements, mut irradiance) = floor();
+        // The lid of a crate over the second square, seen from below by its back.
+        elements.push(square(DVec3::new(1.1, 0.5, 0.1), 0.8 * DVec3::Z, 0.8 * DVec3::X));
+        irradiance.push([7.0; 3]);
+        irradiance[1] = [0.0; 3];
+        let [below, beside] = at_two(&elements, &irradiance);
+        // Where four squares meet three are lit, by 3, 2 and 3; where two meet one is. Corners go round each square.
+        let (meeting, alone) = ((3.0 + 2.0 + 3.0) / 3.0, 3.0);
+        assert_eq!((below, beside), (vec![meeting, alone], vec![alone, meeting]));
+    }
 }

@@ -9,7 +9,8 @@ use crate::batch::{Batch, PartOutcome, bake_files, find_scenes};
 use crate::keys::drop_unused;
 use crate::monitor::Monitor;
 use crate::{depfile, stamp};
-use clap::Parser;
+use clap::{CommandFactory, Parser, Subcommand};
+use clap_complete::Shell;
 use equilux_formats::{Store, Swept};
 use indicatif::DecimalBytes;
 use options::SceneOptions;
@@ -21,7 +22,10 @@ use std::process::ExitCode;
 /// Turn glTF parts into exact form factors and their local light equilibrium, kept in a cache.
 #[derive(Parser)]
 #[command(name = "bake", version, after_help = EXAMPLES)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 struct Arguments {
+    #[command(subcommand)]
+    command: Option<Task>,
     /// glTF files (.gltf, .glb), or folders that are searched for them
     #[arg(required = true)]
     inputs: Vec<PathBuf>,
@@ -42,6 +46,16 @@ struct Arguments {
     gc: bool,
 }
 
+/// What to do other than bake.
+#[derive(Subcommand)]
+enum Task {
+    /// Print what makes a shell complete this program's options
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+}
+
 const EXAMPLES: &str = "\
 Examples:
   bake scenes/house                     every part file of a level
@@ -53,6 +67,10 @@ Examples:
 /// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
 pub fn main() -> ExitCode {
     let arguments = Arguments::parse();
+    if let Some(Task::Completions { shell }) = arguments.command {
+        clap_complete::generate(shell, &mut Arguments::command(), "bake", &mut std::io::stdout());
+        return ExitCode::SUCCESS;
+    }
     let monitor = progress::monitor_for_program();
     let progress = progress::show(&monitor);
     let outcome = run(&arguments, &monitor);
