@@ -11,6 +11,7 @@ use crate::classic::whole;
 use crate::direct::with_direct;
 use crate::equation::Equation;
 use crate::exchange::{Outcome, exchange};
+use crate::gather::sky::{Radiances, Sky};
 use crate::observer::Unobserved;
 use crate::points::{Place, PointLight, light};
 use crate::run::Job;
@@ -93,6 +94,7 @@ struct Sampled {
 pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)> {
     let start = Instant::now();
     let scene = import_scene(&job.scene)?;
+    let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let tolerance = (TOLERANCE.0 * target).min(TOLERANCE.1);
     let with = |element_size| {
@@ -107,6 +109,7 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
         unreachable!("a default size is a length")
     };
     let places = spread(&prepared);
+    let laboratory = Laboratory { scene: &scene, sky: sky.as_ref(), store: &store, places: &places, monitor };
     let mut advice = Advice {
         target,
         met: false,
@@ -121,7 +124,7 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
     let mut size = COARSEST * default;
     loop {
         let began = Instant::now();
-        let sampled = sample(&with(Some(ElementSize::Metres(size))), &scene, &store, &places, monitor)?;
+        let sampled = laboratory.sample(&with(Some(ElementSize::Metres(size))))?;
         let moved = last.as_ref().map(|last| off(&last.middles, &sampled.middles));
         let is_finer = last.as_ref().is_none_or(|last| last.elements < sampled.elements);
         let seconds = began.elapsed().as_secs_f64();
@@ -194,34 +197,47 @@ fn spread(prepared: &Prepared) -> Vec<Place> {
     chosen.enumerate().map(place).collect()
 }
 
-/// Solve the scene with the elements that `job` asks for, and gather light at points.
-fn sample(job: &Job, scene: &Scene, store: &Store, places: &[Place], monitor: &Monitor) -> Result<Sampled> {
-    let stopped = || {
-        let remedy = "run the same command again: what was finished is in the cache";
-        Error::new(&job.scene, "stopped before the settings were found", "a complete run", remedy)
-    };
-    let equation = Equation::of(job, scene, prepare(scene, &job.preparation)?, store, monitor, &Unobserved)?;
-    let elements = &equation.placed.world.elements;
-    let nodes = equation.nodes();
-    refuse_endless_light(&equation.placed, &nodes, &whole(&equation.driven), &job.scene)?;
-    let Outcome { radiosity, mut irradiance, .. } = exchange(&nodes, job.method, job.goal, None, monitor);
-    if monitor.stopped() {
-        return Err(stopped());
+/// What all trials share.
+struct Laboratory<'a> {
+    scene: &'a Scene,
+    sky: Option<&'a Radiances>,
+    store: &'a Store,
+    places: &'a [Place],
+    monitor: &'a Monitor,
+}
+
+impl Laboratory<'_> {
+    /// Solve the scene with the elements that `job` asks for, and gather light at points.
+    fn sample(&self, job: &Job) -> Result<Sampled> {
+        let Self { scene, sky, store, places, monitor } = *self;
+        let stopped = || {
+            let remedy = "run the same command again: what was finished is in the cache";
+            Error::new(&job.scene, "stopped before the settings were found", "a complete run", remedy)
+        };
+        let equation =
+            Equation::of(job, scene, sky, prepare(scene, &job.preparation)?, store, monitor, &Unobserved)?;
+        let elements = &equation.placed.world.elements;
+        let nodes = equation.nodes();
+        refuse_endless_light(&equation.placed, &nodes, &whole(&equation.driven), &job.scene)?;
+        let Outcome { radiosity, mut irradiance, .. } = exchange(&nodes, job.method, job.goal, None, monitor);
+        if monitor.stopped() {
+            return Err(stopped());
+        }
+        let lights = light(&equation.gather(&radiosity), elements, places, monitor).ok_or_else(stopped)?;
+        with_direct(&mut irradiance, &equation.direct.irradiance);
+        let dark = [0.0; 3];
+        let [middles, aside] =
+            [0, 1].map(|first| lights.iter().skip(first).step_by(2).copied().collect::<Vec<_>>());
+        let at_points = |lights: &[Option<PointLight>]| {
+            lights.iter().map(|light| light.map_or(dark, |light| light.irradiance)).collect()
+        };
+        Ok(Sampled {
+            middles: at_points(&middles),
+            aside: at_points(&aside),
+            of_elements: aside.iter().map(|l| l.map_or(dark, |l| irradiance[l.element])).collect(),
+            elements: elements.len(),
+        })
     }
-    let lights = light(&equation.gather(&radiosity), elements, places, monitor).ok_or_else(stopped)?;
-    with_direct(&mut irradiance, &equation.direct.irradiance);
-    let dark = [0.0; 3];
-    let [middles, aside] =
-        [0, 1].map(|first| lights.iter().skip(first).step_by(2).copied().collect::<Vec<_>>());
-    let at_points = |lights: &[Option<PointLight>]| {
-        lights.iter().map(|light| light.map_or(dark, |light| light.irradiance)).collect()
-    };
-    Ok(Sampled {
-        middles: at_points(&middles),
-        aside: at_points(&aside),
-        of_elements: aside.iter().map(|l| l.map_or(dark, |l| irradiance[l.element])).collect(),
-        elements: elements.len(),
-    })
 }
 
 /// The root mean square difference over the mean of the second; the worst channel.

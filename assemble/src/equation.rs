@@ -6,7 +6,7 @@ use crate::coupling::{Coupled, Coupler};
 use crate::direct::{Direct, direct, driven};
 use crate::exchange::{Node, nodes};
 use crate::gather::outside::lights;
-use crate::gather::sky::{Radiances, Sky};
+use crate::gather::sky::Radiances;
 use crate::gather::{Gather, Lights};
 use crate::observer::Observer;
 use crate::placed::Placed;
@@ -36,10 +36,11 @@ pub struct Equation {
 }
 
 impl Equation {
-    /// Compute, or take from the cache, all blocks of a scene. Fails if the monitor was stopped before they were complete.
+    /// Compute, or take from the cache, all blocks of a scene under a sky, which is what `job` names, read. Fails if the monitor was stopped before they were complete.
     pub fn of(
         job: &Job,
         scene: &Scene,
+        sky: Option<&Radiances>,
         prepared: Prepared,
         store: &Store,
         monitor: &Monitor,
@@ -50,14 +51,13 @@ impl Equation {
             Error::new(&job.scene, "stopped before the form factors were complete", "a complete run", remedy)
         };
         let resolution = job.preparation.resolution;
-        let sky: Option<Radiances> = job.sky.as_ref().map(Sky::read).transpose()?;
         let oven = Oven { store, file: &job.scene, resolution, monitor };
         observer.prepared(scene, &prepared);
         let mut placed = bake_parts(&oven, prepared, observer)?.ok_or_else(stopped)?;
         observer.placed(&placed, &scene.cameras);
         let coupled = couple(&coupler(job, &placed, store, monitor), observer)?.ok_or_else(stopped)?;
         placed.relight(&oven, |k| coupled[k].corrected.is_none())?;
-        let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
+        let lights = lights(&scene.lights, job.light_units, sky, &placed.world);
         let direct = direct(&coupler(job, &placed, store, monitor), &lights)?.ok_or_else(stopped)?;
         let driven = |k: usize| driven(&placed.optics_of(k), &direct.irradiance[k]);
         let driven = (0..placed.instances.len()).map(driven).collect();

@@ -110,9 +110,10 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     }
     let places = job.points.as_deref().map(points::read).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
+    let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let element_size = prepared.element_size.to_string();
-    let equation = Equation::of(job, &scene, prepared, &store, monitor, observer)?;
+    let equation = Equation::of(job, &scene, sky.as_ref(), prepared, &store, monitor, observer)?;
     let nodes = equation.nodes();
     let Equation { placed, coupled, optics, direct, .. } = &equation;
     refuse_endless_light(placed, &nodes, &whole(&equation.driven), &job.scene)?;

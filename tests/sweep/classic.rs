@@ -25,10 +25,9 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 #[test]
 fn classic_ways_find_the_light_that_parts_find() {
     let workshop = workshop();
-    // The sweep leaves points on all surfaces.
-    let ended = workshop.run("assemble", &["sweep", "scene.glb", "--budget", "0.5"]);
+    // The middles of some elements are points on all surfaces.
+    let ended = workshop.run("assemble", &["scene.glb", "--element-size", "0.4", "--elements", "points.csv"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    std::fs::copy(workshop.path("out/scene/sweep/points.csv"), workshop.path("points.csv")).expect("points");
 
     let parts = light(&workshop, "parts", &["scene.glb", "--tolerance", "0", "--pictures", "none"]);
     let dense = light(&workshop, "dense", &["classic", "scene.glb"]);

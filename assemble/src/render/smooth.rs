@@ -21,18 +21,23 @@ const SMOOTH: f64 = 0.9;
 /// Middles look at each other from this share of an element's size above it.
 const ABOVE: f64 = 1e-3;
 
+/// No light but rounding, of the brightest.
+const DARK: f64 = 1e-9;
+
 /// Irradiance at each corner, W/m²; of triangles the last is not used.
 pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[Rgb]) -> Vec<[Rgb; 4]> {
     let corners = elements.iter().enumerate().flat_map(|(number, element)| {
         element.corners.as_slice().iter().map(move |corner| GeomWithData::new(corner.to_array(), number))
     });
     let tree = RTree::bulk_load(corners.collect());
+    let brightest = irradiance.iter().flatten().copied().fold(0.0, f64::max);
     let of_element = |(number, element): (usize, &Element)| {
         let size = element.area.sqrt();
         let is_buried = |number: usize| {
             let element = &elements[number];
             let above = || index.first_hit(lifted(element), element.normal);
-            irradiance[number] == [0.0; 3] && above().is_some_and(|hit| !hit.front)
+            let is_dark = irradiance[number].iter().all(|&h| h <= DARK * brightest);
+            is_dark && above().is_some_and(|hit| !hit.front)
         };
         let joins = |other: usize| {
             let sees = || is_buried(number) || index.sees(lifted(element), lifted(&elements[other]));
