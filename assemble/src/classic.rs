@@ -4,7 +4,7 @@ use crate::account::rms_over_mean;
 use crate::placed::Placed;
 use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise, subtract};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
 use std::time::{Duration, Instant};
 
@@ -38,22 +38,12 @@ pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Option<Cl
 /// Every form factor of the scene, element by element.
 fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> {
     let world = &placed.world;
-    let everyone: Vec<usize> = (0..placed.instances.len()).collect();
     let element: Vec<u32> =
         (0..world.nodes.len()).map(|node| world.element_of(node).map_or(u32::MAX, |e| e as u32)).collect();
     let (mut rows, mut time) = (Vec::new(), Duration::ZERO);
     monitor.begin("classic matrix", world.elements.len());
-    for &receivers in &everyone {
-        let request = Request {
-            world,
-            receivers: Audience::Instance(receivers),
-            senders: &everyone,
-            columns: 0..world.nodes.len(),
-            already: None,
-            resolution: EXACT,
-            revision: None,
-        };
-        let timed = block(&request, monitor)?;
+    for instance in 0..placed.instances.len() {
+        let timed = exact_rows(world, Audience::Instance(instance), monitor)?;
         time += timed.time;
         let named = |i: usize| timed.block.row(i).map(|(node, f)| (element[node], f)).collect::<Vec<_>>();
         rows.extend((0..timed.block.receivers()).map(named));

@@ -3,11 +3,8 @@
 // (PNG, base64); "views", a picture of each view; "outside", the requests that went anywhere else; "problems", what the
 // console complained of; "phase", what the page says in the end.
 
-import { existsSync } from "node:fs";
 import { text } from "node:stream/consumers";
-import { chromium } from "playwright-core";
-
-const BROWSERS = ["/usr/bin/chromium", "/usr/bin/chromium-headless-shell", "/usr/bin/google-chrome"];
+import { inBrowser } from "./browser.js";
 
 // The scene as it is now, with an exposure that stays while it is looked at.
 async function look(page) {
@@ -25,13 +22,7 @@ async function look(page) {
 const roundIsPast = (least) => Number(document.querySelector("#scene").dataset.round) > least;
 
 async function run({ url }) {
-  const executablePath = BROWSERS.find(existsSync);
-  if (!executablePath) return { skipped: `there is no browser at ${BROWSERS.join(", ")}` };
-  const browser = await chromium.launch({
-    executablePath,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
-  try {
+  return inBrowser(async (browser) => {
     const page = await browser.newPage({ viewport: { width: 1280, height: 800 } });
     const [outside, problems, shots, views] = [[], [], [], {}];
     page.on("request", (request) => {
@@ -62,9 +53,7 @@ async function run({ url }) {
     shots.push(await look(page));
     const phase = await page.textContent("#phase");
     return { shots, views, outside, problems, phase };
-  } finally {
-    await browser.close();
-  }
+  });
 }
 
 console.log(JSON.stringify(await run(JSON.parse(await text(process.stdin)))));

@@ -2,13 +2,11 @@
 // "normal": [x, y, z]}]}. Out, as JSON: "pixels", linear RGB for each point, and "outside", the requests that the page made
 // beyond its own files. There is no light but what the model emits.
 
-import { existsSync } from "node:fs";
 import { readFile } from "node:fs/promises";
 import { fileURLToPath } from "node:url";
 import { text } from "node:stream/consumers";
-import { chromium } from "playwright-core";
+import { inBrowser } from "./browser.js";
 
-const BROWSERS = ["/usr/bin/chromium", "/usr/bin/chromium-headless-shell", "/usr/bin/google-chrome"];
 // A made-up place that only the handler below answers for.
 const ORIGIN = "http://viewer.invalid";
 
@@ -38,13 +36,7 @@ async function look({ origin, points }) {
 }
 
 async function run({ file, points }) {
-  const executablePath = BROWSERS.find(existsSync);
-  if (!executablePath) return { skipped: `there is no browser at ${BROWSERS.join(", ")}` };
-  const browser = await chromium.launch({
-    executablePath,
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
-  try {
+  return inBrowser(async (browser) => {
     const page = await browser.newPage();
     const outside = [];
     await page.route("**/*", async (route) => {
@@ -64,9 +56,7 @@ async function run({ file, points }) {
     });
     await page.goto(`${ORIGIN}/`);
     return { pixels: await page.evaluate(look, { origin: ORIGIN, points }), outside };
-  } finally {
-    await browser.close();
-  }
+  });
 }
 
 console.log(JSON.stringify(await run(JSON.parse(await text(process.stdin)))));

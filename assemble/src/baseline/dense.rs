@@ -6,7 +6,7 @@ use equilux_bake::equilibrium::endless::endless_light;
 use equilux_bake::equilibrium::krylov::gmres;
 use equilux_bake::equilibrium::{added, scaled, subtract};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Optics, Rgb};
@@ -32,22 +32,12 @@ impl Dense {
     /// The exact one. None if the monitor was stopped.
     pub fn exact(world: &World, monitor: &Monitor) -> Option<Self> {
         let size = world.elements.len();
-        let everyone: Vec<usize> = (0..world.instances()).collect();
         let element: Vec<Option<usize>> = (0..world.nodes.len()).map(|node| world.element_of(node)).collect();
         let mut matrix = Self { size, values: vec![0.0; size * size], time: Duration::ZERO };
         let places: Vec<usize> = (0..size).collect();
         for rows in places.chunks(ROWS) {
             let receivers = Audience::Points(&world.elements[rows[0]..rows[0] + rows.len()]);
-            let request = Request {
-                world,
-                receivers,
-                senders: &everyone,
-                columns: 0..world.nodes.len(),
-                already: None,
-                resolution: EXACT,
-                revision: None,
-            };
-            let timed = block(&request, monitor)?;
+            let timed = exact_rows(world, receivers, monitor)?;
             matrix.time += timed.time;
             for (k, &i) in rows.iter().enumerate() {
                 let row = &mut matrix.values[i * size..(i + 1) * size];

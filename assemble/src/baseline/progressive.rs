@@ -7,7 +7,7 @@
 use super::Solved;
 use equilux_bake::equilibrium::{added, scaled};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::treecode::{Audience, EXACT, Request, block};
+use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::world::World;
 use equilux_formats::{Element, Optics, Rgb};
 use std::time::Duration;
@@ -59,17 +59,7 @@ impl Light<'_> {
     fn shoot(&mut self, shooters: &[usize], monitor: &Monitor) -> Option<()> {
         let world = self.world;
         let points: Vec<Element> = shooters.iter().map(|&j| world.elements[j]).collect();
-        let everyone: Vec<usize> = (0..world.instances()).collect();
-        let request = Request {
-            world,
-            receivers: Audience::Points(&points),
-            senders: &everyone,
-            columns: 0..world.nodes.len(),
-            already: None,
-            resolution: EXACT,
-            revision: None,
-        };
-        let timed = block(&request, monitor)?;
+        let timed = exact_rows(world, Audience::Points(&points), monitor)?;
         self.time += timed.time;
         let sent: Vec<Rgb> = shooters.iter().map(|&j| std::mem::take(&mut self.unshot[j])).collect();
         for (k, (shooter, sent)) in points.iter().zip(sent).enumerate() {

@@ -123,6 +123,21 @@ pub struct Request<'a> {
     pub revision: Option<Revision<'a>>,
 }
 
+/// Every form factor of some receivers to all elements of a world, in full. None if the monitor was stopped.
+pub fn exact_rows(world: &World, receivers: Audience, monitor: &Monitor) -> Option<Timed> {
+    let everyone: Vec<usize> = (0..world.instances()).collect();
+    let request = Request {
+        world,
+        receivers,
+        senders: &everyone,
+        columns: 0..world.nodes.len(),
+        already: None,
+        resolution: EXACT,
+        revision: None,
+    };
+    block(&request, monitor)
+}
+
 /// Compute a block on all threads. None if the monitor was stopped.
 pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
     let found = Descent { request, monitor }.rows();
