@@ -15,7 +15,7 @@ use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
 use crate::points;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
-use crate::render::{Eye, Reference, Shot, camera};
+use crate::render::{Reference, Shot};
 use crate::report::{Report, Run, cpu_seconds, peak_rss, summary};
 use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
@@ -105,9 +105,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
     let against = job.shot.as_ref().and_then(|shot| shot.against.as_deref());
     let against = against.map(Reference::read).transpose()?;
-    if let Some(Eye::Camera(name)) = job.shot.as_ref().map(|shot| &shot.eye) {
-        camera(name, &scene.cameras, &job.scene)?;
-    }
+    job.shot.as_ref().map(|shot| shot.check(&scene.cameras, &job.scene)).transpose()?;
     let places = job.points.as_deref().map(points::read).transpose()?;
     job.depfile.as_deref().map(stamp::check).transpose()?;
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;

@@ -53,6 +53,14 @@ fn a_camera_that_is_not_there_is_named_before_any_work() {
 }
 
 #[test]
+fn an_eye_that_looks_at_itself_is_refused() {
+    let (workshop, ended) = rendered(&["--from", "1,1,1", "--to", "1,1,1"]);
+    assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+    assert!(ended.stderr.contains("at itself"), "{}", ended.stderr);
+    assert!(!workshop.path("out").exists(), "files of a refused run");
+}
+
+#[test]
 fn shells_are_told_the_options() {
     for program in ["assemble", "bake"] {
         for shell in ["bash", "zsh", "fish"] {

@@ -47,6 +47,11 @@ fn a_wrong_command_line_is_exit_code_2_and_touches_nothing() {
     refused(&workshop, "assemble", &["scene.glb", "--error", "-1"]);
     refused(&workshop, "assemble", &["scene.glb", "--rounds", "few"]);
     refused(&workshop, "assemble", &["scene.glb", "--exact-rows", "some"]);
+    refused(&workshop, "assemble", &["scene.glb", "--target-error", "0"]);
+    refused(&workshop, "assemble", &["scene.glb", "--target-error", "1%", "--tolerance", "0.1"]);
+    refused(&workshop, "assemble", &["scene.glb", "--live", "99999"]);
+    refused(&workshop, "assemble", &["render", "scene.glb", "--size", "0x10"]);
+    refused(&workshop, "assemble", &["render", "scene.glb", "--from", "1,2,3"]);
     assert_eq!(
         workshop.files("").keys().collect::<Vec<_>>(),
         before.keys().collect::<Vec<_>>(),

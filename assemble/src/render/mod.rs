@@ -35,6 +35,21 @@ pub struct Shot {
     pub against: Option<PathBuf>,
 }
 
+impl Shot {
+    /// Fail where nothing could be seen, before any work.
+    pub fn check(&self, cameras: &[Camera], file: &Path) -> Result<()> {
+        match &self.eye {
+            Eye::Scene => Ok(()),
+            Eye::Camera(name) => camera(name, cameras, file).map(drop),
+            Eye::Points { from, to, .. } if from != to => Ok(()),
+            Eye::Points { .. } => {
+                let expected = "an eye in one place that looks at another";
+                Err(Error::new(file, "looks from a point at itself", expected, "move --from or --to"))
+            }
+        }
+    }
+}
+
 /// From where a picture is taken.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Eye {
@@ -134,7 +149,7 @@ fn view(shot: &Shot, cameras: &[Camera], file: &Path, framing: impl FnOnce() -> 
 }
 
 /// The camera of a name, or of a number from 1.
-pub fn camera<'a>(name: &str, cameras: &'a [Camera], file: &Path) -> Result<&'a Camera> {
+fn camera<'a>(name: &str, cameras: &'a [Camera], file: &Path) -> Result<&'a Camera> {
     let by_name = cameras.iter().find(|camera| camera.name == name);
     let by_number = || name.parse::<usize>().ok().and_then(|number| cameras.get(number.checked_sub(1)?));
     by_name.or_else(by_number).ok_or_else(|| {
