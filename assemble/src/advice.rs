@@ -28,8 +28,11 @@ use std::time::Instant;
 
 /// Points at which light is asked for, each inside another element of the default size. In the middles of half of them light is
 /// compared from size to size: closer to where things touch it may change without end, and a single point would decide. Those
-/// halfway to a corner tell how far an element's one value is from the light on it.
+/// towards a corner tell how far an element's one value is from the light on it.
 const POINTS: usize = 1500;
+
+/// So far towards a corner, where no middle is of an element of half the size.
+const ASIDE: f64 = 1.0 / 3.0;
 
 /// The first elements are this many times as long as those of the default size.
 const COARSEST: f64 = 4.0;
@@ -82,7 +85,7 @@ pub struct Trial {
 struct Sampled {
     /// W/m² in middles.
     middles: Vec<Rgb>,
-    /// W/m² halfway to corners.
+    /// W/m² towards corners.
     aside: Vec<Rgb>,
     /// W/m² of the elements there.
     of_elements: Vec<Rgb>,
@@ -178,7 +181,7 @@ impl Advice {
     }
 }
 
-/// Places on elements, each for the same share of the area: in turn a middle and one halfway from there to a corner.
+/// Places on elements, each for the same share of the area: in turn a middle and one towards a corner.
 fn spread(prepared: &Prepared) -> Vec<Place> {
     let placed = |i: &Instance| (&prepared.parts[i.part.index()].geometry, i.placement);
     let elements = World::new(prepared.instances.iter().map(placed)).elements;
@@ -190,7 +193,7 @@ fn spread(prepared: &Prepared) -> Vec<Place> {
         share(after) > share(std::mem::replace(&mut before, after))
     });
     let place = |(k, element): (usize, &Element)| {
-        let aside = (element.centroid + element.corners.as_slice()[0]) / 2.0;
+        let aside = element.centroid.lerp(element.corners.as_slice()[0], ASIDE);
         let point = if k % 2 == 0 { element.centroid } else { aside };
         Place { point, normal: element.normal }
     };
