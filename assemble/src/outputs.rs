@@ -26,7 +26,10 @@ use std::time::{Duration, Instant};
 /// The file name of the lit model.
 pub const RESULT: &str = "result.glb";
 
-/// So many rounds stand beside the end in one picture.
+/// The first rounds and the end in one picture.
+const STRIP: &str = "rounds.png";
+
+/// So many rounds are in it.
 const FIRST_ROUNDS: usize = 3;
 
 /// What there is to show.
@@ -197,7 +200,7 @@ fn draw_all(
         written.push(edges);
         let first = shown.iter().take(FIRST_ROUNDS).map(|(_, radiosity)| *radiosity);
         let all = first.chain([light.outcome.radiosity.as_slice()]);
-        let rounds = folder.join("rounds.png");
+        let rounds = folder.join(STRIP);
         write_png(&rounds, &strip(&all.map(|b| shade(canvas, b, exposure)).collect::<Vec<_>>()))?;
         written.push(rounds);
     }
@@ -245,7 +248,9 @@ fn prepare_folder(folder: &Path) -> Result<()> {
         let name = entry.file_name();
         let name = name.to_string_lossy();
         let number = name.strip_prefix("round-").and_then(|rest| rest.strip_suffix(".png"));
-        if number.is_some_and(|number| number.len() >= 3 && number.bytes().all(|b| b.is_ascii_digit())) {
+        let is_round =
+            number.is_some_and(|number| number.len() >= 3 && number.bytes().all(|b| b.is_ascii_digit()));
+        if is_round || name == STRIP {
             std::fs::remove_file(entry.path()).map_err(failed)?;
         }
     }

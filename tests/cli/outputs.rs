@@ -19,13 +19,15 @@ fn a_run_leaves_a_picture_of_each_round_and_the_result() {
     let ended = workshop.run("assemble", &arguments);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let rounds = ["round-001.png", "round-002.png", "round-003.png"];
-    let expected = [&["final.png", "result.glb"], &rounds[..], &["wireframe.png"]].concat();
+    let expected = [&["final.png", "result.glb"], &rounds[..], &["rounds.png", "wireframe.png"]].concat();
     assert_eq!(names(&workshop), expected);
 
     // A shorter run takes the third picture away; the comparison adds one.
     let ended = workshop.run("assemble", &[&arguments[..4], &["2", "--verify"]].concat());
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    let expected = [&["classic.png", "final.png", "result.glb"], &rounds[..2], &["wireframe.png"]].concat();
+    let expected =
+        [&["classic.png", "final.png", "result.glb"], &rounds[..2], &["rounds.png", "wireframe.png"]]
+            .concat();
     assert_eq!(names(&workshop), expected);
 }
 
@@ -36,8 +38,12 @@ fn of_many_rounds_the_first_eight_powers_of_two_and_the_last_have_pictures() {
     let ended = workshop.run("assemble", &arguments);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let rounds = [1, 2, 3, 4, 5, 6, 7, 8, 16, 21].map(|round| format!("round-{round:03}.png"));
-    let expected =
-        [&["final.png".into(), "result.glb".into()], &rounds[..], &["wireframe.png".into()]].concat();
+    let expected = [
+        &["final.png".into(), "result.glb".into()],
+        &rounds[..],
+        &["rounds.png".into(), "wireframe.png".into()],
+    ]
+    .concat();
     assert_eq!(names(&workshop), expected);
     assert!(ended.stdout.contains("round-001.png to round-021.png (10 pictures)"), "{}", ended.stdout);
 }
