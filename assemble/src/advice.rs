@@ -97,6 +97,8 @@ struct Sampled {
 pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)> {
     let start = Instant::now();
     let scene = import_scene(&job.scene)?;
+    job.check(&scene)?;
+    job.tables()?;
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let tolerance = (TOLERANCE.0 * target).min(TOLERANCE.1);

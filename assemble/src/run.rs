@@ -12,7 +12,7 @@ use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
 use crate::observer::{Observer, Unobserved};
 use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
-use crate::points;
+use crate::points::{self, Place};
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::render::{Reference, Shot};
@@ -23,7 +23,7 @@ use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Preparation, prepare};
 use equilux_bake::{depfile, stamp};
-use equilux_formats::{Result, Store, Swept};
+use equilux_formats::{Result, Scene, Store, Swept};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -88,6 +88,20 @@ impl Job {
         let against = self.shot.as_ref().and_then(|shot| shot.against.as_deref());
         [sky, self.points.as_deref(), against].into_iter().flatten()
     }
+
+    /// Fail where outputs could not be written or nothing could be seen, before hours are spent on them.
+    pub fn check(&self, scene: &Scene) -> Result<()> {
+        check_writable(self, scene)?;
+        self.depfile.as_deref().map(stamp::check).transpose()?;
+        self.shot.as_ref().map_or(Ok(()), |shot| shot.check(&scene.cameras, &self.scene))
+    }
+
+    /// The places to tell the light of and the light to compare with, where they are asked for.
+    pub fn tables(&self) -> Result<(Option<Vec<Place>>, Option<Reference>)> {
+        let against = self.shot.as_ref().and_then(|shot| shot.against.as_deref());
+        let places = self.points.as_deref().map(points::read).transpose()?;
+        Ok((places, against.map(Reference::read).transpose()?))
+    }
 }
 
 /// Run the job; everything is written when this returns.
@@ -101,13 +115,9 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let mut scene = import_scene(&job.scene)?;
     scene.sources.extend(job.beside().map(Path::to_path_buf));
     let prepared = prepare(&scene, &job.preparation)?;
-    check_writable(job, &scene)?;
+    job.check(&scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
-    let against = job.shot.as_ref().and_then(|shot| shot.against.as_deref());
-    let against = against.map(Reference::read).transpose()?;
-    job.shot.as_ref().map(|shot| shot.check(&scene.cameras, &job.scene)).transpose()?;
-    let places = job.points.as_deref().map(points::read).transpose()?;
-    job.depfile.as_deref().map(stamp::check).transpose()?;
+    let (places, against) = job.tables()?;
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let element_size = prepared.element_size.to_string();

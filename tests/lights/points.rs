@@ -65,9 +65,12 @@ fn tables_without_places_are_refused_by_name_before_any_work() {
         ("x,y,z,nx,ny,nz\n1,2,3\n", "cannot be read"),
     ] {
         fs::write(workshop.path("points.csv"), text).unwrap();
-        let ended = workshop.run("assemble", &["scene.glb", "--points", "points.csv"]);
-        assert_eq!(ended.code, Some(1), "{}", ended.stdout);
-        assert!(ended.stderr.contains("points.csv") && ended.stderr.contains(word), "{}", ended.stderr);
+        for more in [&[][..], &["--target-error", "5%"]] {
+            let arguments = [&["scene.glb", "--points", "points.csv"], more].concat();
+            let ended = workshop.run("assemble", &arguments);
+            assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+            assert!(ended.stderr.contains("points.csv") && ended.stderr.contains(word), "{}", ended.stderr);
+        }
     }
     assert!(!workshop.path("out").exists() && !workshop.path(".equilux").exists(), "files of a refused run");
 }

@@ -15,7 +15,7 @@ use crate::gather::outside::{LightUnits, lights};
 use crate::gather::sky::Sky;
 use crate::outputs::{POINTS, unusable};
 use crate::placed::Placed;
-use crate::points;
+use crate::points::{self, Place, PointLight};
 use crate::report::{cpu_seconds, peak_rss};
 use dense::Dense;
 use equilux_bake::cached::Origin;
@@ -27,7 +27,7 @@ use equilux_bake::prepare::{Division, Preparation, Prepared, PreparedPart, prepa
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Answers, BakedPart, Error, LocalEquilibrium, Optics, Result, Rgb, Rows, Store};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// How the whole scene is solved.
@@ -118,6 +118,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let stopped =
         || Error::new(&job.scene, "stopped before the light was known", "a complete run", "run it again");
     let scene = import_scene(&job.scene)?;
+    let places = job.points.as_deref().map(points::read).transpose()?;
     let preparation = Preparation {
         element_size: job.element_size,
         division: Division::Authored,
@@ -143,7 +144,14 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let gathering = Instant::now();
     let emission = whole_optics(&placed).emission;
     let gather = Gather::new(&placed, &emission, &solved.radiosity, &lights, EXACT);
-    let outputs = write_points(job, &scene.name, &gather, &placed, &solved, monitor)?.ok_or_else(stopped)?;
+    let outputs = match &places {
+        Some(places) => {
+            let lights =
+                points::light(&gather, &placed.world.elements, places, monitor).ok_or_else(stopped)?;
+            vec![write_points(&job.out.join(&scene.name), places, &lights, &solved.irradiance)?]
+        }
+        None => vec![],
+    };
     Ok(Report {
         scene: scene.name,
         elements: placed.world.elements.len(),
@@ -213,23 +221,15 @@ fn without_light(part: PreparedPart) -> Baked {
     }
 }
 
-/// The light of points, if asked for; returns what was written. None if the monitor was stopped.
+/// Write the light of points; returns the path, for a person.
 fn write_points(
-    job: &Job,
-    scene: &str,
-    gather: &Gather,
-    placed: &Placed,
-    solved: &Solved,
-    monitor: &Monitor,
-) -> Result<Option<Vec<String>>> {
-    let Some(table) = &job.points else { return Ok(Some(vec![])) };
-    let places = points::read(table)?;
-    let Some(lights) = points::light(gather, &placed.world.elements, &places, monitor) else {
-        return Ok(None);
-    };
-    let folder = job.out.join(scene);
-    std::fs::create_dir_all(&folder).map_err(|error| unusable(&folder, &error))?;
+    folder: &Path,
+    places: &[Place],
+    lights: &[Option<PointLight>],
+    irradiance: &[Rgb],
+) -> Result<String> {
+    std::fs::create_dir_all(folder).map_err(|error| unusable(folder, &error))?;
     let path = folder.join(POINTS);
-    points::write(&path, &places, &lights, &solved.irradiance)?;
-    Ok(Some(vec![path.display().to_string()]))
+    points::write(&path, places, lights, irradiance)?;
+    Ok(path.display().to_string())
 }
