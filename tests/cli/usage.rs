@@ -15,6 +15,19 @@ fn help_shows_examples() {
 }
 
 #[test]
+fn a_folder_with_one_scene_is_that_scene() {
+    let workshop = Workshop::with(&square());
+    let options = ["--element-size", "1", "--pictures", "none"];
+    let ended = workshop.run("assemble", &[&["."], &options[..]].concat());
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stdout.starts_with("scene: 1 elements"), "{}", ended.stdout);
+    std::fs::copy(workshop.path("scene.glb"), workshop.path("other.glb")).expect("a second scene");
+    let ended = workshop.run("assemble", &[&["."], &options[..]].concat());
+    assert_eq!(ended.code, Some(1), "{}", ended.stdout);
+    assert!(ended.stderr.contains("name a file"), "{}", ended.stderr);
+}
+
+#[test]
 fn a_wrong_command_line_is_exit_code_2_and_touches_nothing() {
     let workshop = Workshop::with(&square());
     let before = workshop.files("");

@@ -2,7 +2,7 @@
 
 use super::{Job, Report, Way, run};
 use crate::cli::assembly::Intensities;
-use crate::cli::values::sky;
+use crate::cli::values::{self, sky};
 use crate::gather::sky::Sky;
 use clap::{Args, ValueEnum};
 use equilux_bake::cli::options::element_size;
@@ -13,7 +13,8 @@ use std::path::PathBuf;
 /// A scene, and how to solve it the classic way.
 #[derive(Args)]
 pub struct Arguments {
-    /// The scene, a .gltf or .glb file
+    /// The scene, a .gltf or .glb file, or a folder with one
+    #[arg(value_parser = values::scene)]
     scene: PathBuf,
     /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
     #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]

@@ -14,8 +14,8 @@ use std::path::PathBuf;
 /// A scene, and how to assemble it.
 #[derive(Args)]
 pub struct Assembly {
-    /// The scene, a .gltf or .glb file
-    #[arg(required = true)]
+    /// The scene, a .gltf or .glb file, or a folder with one
+    #[arg(required = true, value_parser = values::scene)]
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub options: SceneOptions,

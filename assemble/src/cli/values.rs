@@ -3,6 +3,8 @@
 use crate::gather::sky::Sky;
 use crate::proof::sample::ExactRows;
 use glam::DVec3;
+use std::convert::Infallible;
+use std::path::PathBuf;
 
 pub fn exact_rows(text: &str) -> Result<ExactRows, String> {
     match text.parse() {
@@ -76,6 +78,17 @@ pub fn error_bound(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(error) if error >= 0.0 => Ok(error),
         _ => Err("an error bound is a number, zero or more".into()),
+    }
+}
+
+/// A scene's file; of a folder with one such file, that.
+pub fn scene(text: &str) -> Result<PathBuf, Infallible> {
+    let is_scene = |path: &PathBuf| path.extension().is_some_and(|kind| kind == "gltf" || kind == "glb");
+    let files = std::fs::read_dir(text).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut scenes = files.filter(is_scene);
+    match (scenes.next(), scenes.next()) {
+        (Some(only), None) => Ok(only),
+        _ => Ok(text.into()),
     }
 }
 

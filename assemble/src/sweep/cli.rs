@@ -2,6 +2,7 @@
 
 use super::findings::{percent, seconds};
 use super::{Options, Summary, sweep};
+use crate::cli::values;
 use clap::Args;
 use equilux_bake::monitor::Monitor;
 use equilux_formats::Result;
@@ -12,7 +13,8 @@ use std::time::Duration;
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
-    /// The scene, a .gltf or .glb file
+    /// The scene, a .gltf or .glb file, or a folder with one
+    #[arg(value_parser = values::scene)]
     scene: PathBuf,
     /// The light it should have, a table as scenes/README.md describes it [default: the finest run within a third of the
     /// budget]
