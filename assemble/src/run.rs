@@ -1,10 +1,10 @@
 //! The whole run: scene → baked parts → coupling → exchange → outputs and report.
 
 use crate::account::refuse_endless_light;
-use crate::classic::{classic, whole};
+use crate::classic::{Classic, classic, whole};
 use crate::direct::with_direct;
 use crate::equation::Equation;
-use crate::exchange::{Goal, Method, exchange_observed};
+use crate::exchange::{Goal, Method, Node, Outcome, exchange_observed};
 use crate::explain::explained;
 use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
@@ -12,6 +12,7 @@ use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
 use crate::observer::{Observer, Unobserved};
 use crate::outputs::{Light, RESULT, Written, check_writable, write_all};
+use crate::placed::Placed;
 use crate::points::{self, Place};
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
@@ -125,13 +126,8 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let nodes = equation.nodes();
     let Equation { placed, coupled, optics, direct, .. } = &equation;
     refuse_endless_light(placed, &nodes, &whole(&equation.driven), &job.scene)?;
-    let start_light = if job.warm { last_light(placed, &store, &job.scene) } else { None };
     observer.coupled_all(placed, coupled, optics);
-    let start_light = start_light.as_deref();
-    let mut outcome = exchange_observed(&nodes, job.method, job.goal, start_light, monitor, observer);
-    if job.warm {
-        keep(placed, &store, &job.scene, &outcome.radiosity)?;
-    }
+    let mut outcome = exchanged(job, placed, &nodes, &store, monitor, observer)?;
     let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let proof = prove(placed, &nodes, &outcome, job.exact_rows, monitor);
     let peak = peak_rss();
@@ -170,11 +166,31 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     report.seconds.points = point_time.as_secs_f64();
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
-    let unverified = (job.verify && classic.is_none())
-        .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned());
-    let last = dropped_note(swept).into_iter().chain(unverified).collect();
+    let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
     report.notes = [scene.notes, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
+}
+
+/// The light of the scene; from the last run's, and kept for the next, if that is asked for.
+fn exchanged(
+    job: &Job,
+    placed: &Placed,
+    nodes: &[Node],
+    store: &Store,
+    monitor: &Monitor,
+    observer: &dyn Observer,
+) -> Result<Outcome> {
+    let start = if job.warm { last_light(placed, store, &job.scene) } else { None };
+    let outcome = exchange_observed(nodes, job.method, job.goal, start.as_deref(), monitor, observer);
+    if job.warm {
+        keep(placed, store, &job.scene, &outcome.radiosity)?;
+    }
+    Ok(outcome)
+}
+
+fn unverified_note(job: &Job, classic: Option<&Classic>) -> Option<String> {
+    (job.verify && classic.is_none())
+        .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned())
 }
 
 fn dropped_note(swept: Option<Swept>) -> Option<String> {

@@ -150,14 +150,9 @@ impl<'a> Course<'a> {
             let radiosity = Some(state.radiosity.clone());
             rounds.push(GroupRound { judged, time: start.elapsed(), radiosity });
             monitor.advance(1);
-            observer.round(&Passed {
-                instances: &self.group.members,
-                number: rounds.len(),
-                known: Known::default().with(&judged),
-                times,
-                is_last: ends,
-                radiosity: &state.radiosity,
-            });
+            let (number, known) = (rounds.len(), Known::default().with(&judged));
+            let (instances, radiosity) = (&self.group.members, &state.radiosity);
+            observer.round(&Passed { instances, number, known, times, is_last: ends, radiosity });
         }
         if !(is_warm && rounds.is_empty()) {
             judged.error_bound = self.sharp_bound(&state, times);

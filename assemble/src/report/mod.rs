@@ -9,7 +9,7 @@ pub use summary::{Run, summary};
 
 use crate::advice::Advice;
 use crate::exchange::energy::Energy;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The whole report, as `--json` prints it. Seconds unless said, linear RGB, W or W/m².
@@ -102,7 +102,8 @@ pub struct Blocks {
 
 /// The paper's steps: 1, 2 own blocks of the first part and of the others; 3, 4 coupling into the first and into the
 /// others; 5, 6 equilibrium in the first and in the others; 7 transfer to the others, 8 to the first.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Seconds {
     /// F₁₁.
     pub step1: f64,

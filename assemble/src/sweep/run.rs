@@ -2,6 +2,7 @@
 //! JSON so that a sweep that was stopped goes on where it was.
 
 use super::setting::Setting;
+use crate::report::Seconds;
 use equilux_formats::Rgb;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -50,26 +51,6 @@ pub struct Facts {
     pub blocks: Blocks,
     /// Shots of progressive refinement.
     pub shots: Option<usize>,
-}
-
-/// Seconds.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Seconds {
-    pub step1: f64,
-    pub step2: f64,
-    pub step3: f64,
-    pub step4: f64,
-    pub step5: f64,
-    pub step6: f64,
-    pub step7: f64,
-    pub step8: f64,
-    pub t1: f64,
-    pub t2: f64,
-    pub t3: f64,
-    pub solve: f64,
-    pub solve_cpu: Option<f64>,
-    pub points: f64,
 }
 
 /// Memory.

@@ -6,9 +6,10 @@ use super::errors::Errors;
 use super::findings::findings;
 use super::front::front;
 use super::reference::Reference;
-use super::run::{Round, Run, Seconds};
+use super::run::{Round, Run};
 use super::separation::{Separated, separated};
 use super::setting::{Kind, Setting};
+use crate::report::Seconds;
 use serde::Serialize;
 use std::path::Path;
 
