@@ -157,10 +157,7 @@ impl<'a> Course<'a> {
         if !(is_warm && rounds.is_empty()) {
             judged.error_bound = self.sharp_bound(&state, times);
         }
-        if let Some(last) = rounds.last_mut() {
-            last.judged = judged;
-        }
-        look_back(&mut rounds, &state.radiosity);
+        look_back(&mut rounds, judged, &state.radiosity);
         let waiting = self.group.waiting_irradiance(&state.radiosity);
         GroupOutcome {
             irradiance: sum(&state.irradiance, &waiting),
@@ -256,9 +253,12 @@ fn forget(rounds: &mut [GroupRound]) {
     }
 }
 
-/// Later light tells how far earlier light was off: |B − B_n| ≤ |B − B_N| + |B_N − B_n|.
-fn look_back(rounds: &mut [GroupRound], light: &[Rgb]) {
-    let Some(proved) = rounds.last().map(|last| last.judged.error_bound) else { return };
+/// The last round gets what is known of its light in the end. Later light tells how far earlier light was off:
+/// |B − B_n| ≤ |B − B_N| + |B_N − B_n|.
+fn look_back(rounds: &mut [GroupRound], judged: Judged, light: &[Rgb]) {
+    let Some(last) = rounds.last_mut() else { return };
+    last.judged = judged;
+    let proved = judged.error_bound;
     for round in rounds {
         let Some(earlier) = &round.radiosity else { continue };
         let moved = earlier
