@@ -41,6 +41,7 @@ pub mod scene_light;
 mod steps;
 #[cfg(feature = "cli")]
 pub mod sweep;
+pub mod table;
 mod warm;
 #[cfg(feature = "cli")]
 pub mod watch;

@@ -3,10 +3,10 @@
 
 use crate::gather::{Gather, receiver};
 use crate::output_file;
-use csv::StringRecord;
+use crate::table::Table;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::visibility::rays::RayIndex;
-use equilux_formats::{Element, Error, Result, Rgb};
+use equilux_formats::{Element, Result, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -44,63 +44,34 @@ pub struct PointLight {
     pub irradiance: Rgb,
 }
 
-/// Where places are in a table.
-const PLACE: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
-
-/// Where irradiance is in a table: at points, or of elements.
-const LIGHT: [[&str; 3]; 2] = [["Hc_r", "Hc_g", "Hc_b"], ["H_r", "H_g", "H_b"]];
+/// What a table of points should hold, and what to do if it does not.
+const EXPECTED: [&str; 2] = [
+    "a table with a line a point, and numbers in columns named on the first line: x, y, z, nx, ny, nz, and for light H_r, H_g, H_b",
+    "write the points as comma-separated values with such a first line",
+];
 
 /// Read the places of a table with the columns `x`, `y`, `z`, `nx`, `ny` and `nz`; others are ignored. Fails if the file cannot
 /// be read, has no such columns or holds what is no finite number.
 pub fn read(file: &Path) -> Result<Vec<Place>> {
-    let rows = rows(file, |_| PLACE.to_vec())?;
-    rows.iter().enumerate().map(|(number, row)| place(file, number, row)).collect()
+    places(&Table::read(file, EXPECTED)?)
 }
 
 /// Read places and their irradiance, W/m², from `Hc_r`, `Hc_g` and `Hc_b` or from `H_r`, `H_g` and `H_b`. Fails as [`read`] does.
-pub fn read_light(file: &Path) -> Result<Vec<(Place, Rgb)>> {
-    let columns = |header: &StringRecord| {
-        let has = |name: &str| header.iter().any(|field| field.trim() == name);
-        let light = if has(LIGHT[0][0]) { LIGHT[0] } else { LIGHT[1] };
-        [&PLACE[..], &light].concat()
+pub fn read_light(file: &Path) -> Result<(Vec<Place>, Vec<Rgb>)> {
+    let table = Table::read(file, EXPECTED)?;
+    let names = if table.has("Hc_r") { ["Hc_r", "Hc_g", "Hc_b"] } else { ["H_r", "H_g", "H_b"] };
+    Ok((places(&table)?, table.vectors(names)?))
+}
+
+/// The places of a table that is read. Fails as [`read`] does.
+pub fn places(table: &Table) -> Result<Vec<Place>> {
+    let (points, normals) = (table.vectors(["x", "y", "z"])?, table.vectors(["nx", "ny", "nz"])?);
+    let place = |(row, (point, normal)): (usize, ([f64; 3], [f64; 3]))| {
+        let normal = DVec3::from(normal).try_normalize();
+        let normal = normal.ok_or_else(|| table.wrong_line(row, "has no normal"))?;
+        Ok(Place { point: point.into(), normal })
     };
-    let lit = |(number, row): (usize, &Vec<f64>)| Ok((place(file, number, row)?, [row[6], row[7], row[8]]));
-    rows(file, columns)?.iter().enumerate().map(lit).collect()
-}
-
-fn place(file: &Path, number: usize, row: &[f64]) -> Result<Place> {
-    let normal = DVec3::new(row[3], row[4], row[5]).try_normalize();
-    let normal = normal.ok_or_else(|| unusable(file, format!("line {} has no normal", number + 2)))?;
-    Ok(Place { point: DVec3::new(row[0], row[1], row[2]), normal })
-}
-
-/// The numbers in the columns that `wanted` chooses from the first line, line by line.
-fn rows<'n>(file: &Path, wanted: impl Fn(&StringRecord) -> Vec<&'n str>) -> Result<Vec<Vec<f64>>> {
-    let unreadable = |error: csv::Error| unusable(file, format!("cannot be read ({error})"));
-    let mut table = csv::Reader::from_path(file).map_err(unreadable)?;
-    let header = table.headers().map_err(unreadable)?.clone();
-    let column = |name: &&str| {
-        let found = header.iter().position(|field| field.trim() == *name);
-        found.ok_or_else(|| unusable(file, format!("has no column `{name}`")))
-    };
-    let columns: Vec<usize> = wanted(&header).iter().map(column).collect::<Result<_>>()?;
-    let mut rows = Vec::new();
-    for (number, record) in table.records().enumerate() {
-        let record = record.map_err(unreadable)?;
-        let number_in = |&column: &usize| record[column].trim().parse().ok().filter(|v: &f64| v.is_finite());
-        let row: Option<Vec<f64>> = columns.iter().map(number_in).collect();
-        rows.push(row.ok_or_else(|| unusable(file, format!("line {} holds what is no number", number + 2)))?);
-    }
-    if rows.is_empty() {
-        return Err(unusable(file, "holds no points".into()));
-    }
-    Ok(rows)
-}
-
-fn unusable(file: &Path, found: String) -> Error {
-    let expected = "a table with a line a point, and numbers in columns named on the first line: x, y, z, nx, ny, nz, and for light \
-                    H_r, H_g, H_b";
-    Error::new(file, found, expected, "write the points as comma-separated values with such a first line")
+    points.into_iter().zip(normals).enumerate().map(place).collect()
 }
 
 /// The light at places, none for those on no surface of these `elements`, which are the scene's. None at all if the monitor

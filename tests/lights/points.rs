@@ -59,8 +59,8 @@ fn points_on_no_surface_are_counted_and_have_no_light() {
 fn tables_without_places_are_refused_by_name_before_any_work() {
     let workshop = Workshop::with(&square());
     for (text, word) in [
-        ("x,y,z\n1,2,3\n", "no column `nx`"),
-        ("x,y,z,nx,ny,nz\n1,2,3,0,1,0\n1,2,three,0,1,0\n", "line 3 holds what is no number"),
+        ("x,y,z\n1,2,3\n", "no column nx"),
+        ("x,y,z,nx,ny,nz\n1,2,3,0,1,0\n1,2,three,0,1,0\n", "line 3 has `three` for z"),
         ("x,y,z,nx,ny,nz\n1,2,3,0,0,0\n", "line 2 has no normal"),
         ("x,y,z,nx,ny,nz\n1,2,3\n", "cannot be read"),
     ] {

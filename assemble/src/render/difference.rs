@@ -32,7 +32,7 @@ impl Reference {
     /// Read a table with the columns that [`crate::points::read`] asks for, and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or `H_r`, `H_g`,
     /// `H_b`, W/m². Fails if it cannot be read or has no such columns.
     pub fn read(file: &Path) -> Result<Self> {
-        let (places, irradiance) = read_light(file)?.into_iter().unzip();
+        let (places, irradiance) = read_light(file)?;
         Ok(Self { places, irradiance })
     }
 }

@@ -1,10 +1,10 @@
 //! What runs are compared with: irradiance at points, from a file or from the finest run of the sweep.
 
 use super::run::Run;
-use crate::points::Place;
-use equilux_formats::{Error, Result, Rgb};
+use crate::points::{Place, places};
+use crate::table::Table;
+use equilux_formats::{Result, Rgb};
 use glam::DVec3;
-use std::collections::HashMap;
 use std::path::Path;
 
 /// Irradiance at points.
@@ -18,53 +18,27 @@ pub struct Reference {
     pub noise: Vec<Rgb>,
 }
 
-/// The columns that a file of truth needs, and what they are.
-const COLUMNS: &str = "columns x, y, z, nx, ny, nz, area, Hc_r, Hc_g, Hc_b and, if there is noise, Hc_se_r, Hc_se_g, Hc_se_b, \
-                       with a number in every line";
+/// What a file of truth should hold, and what to do if it does not.
+const EXPECTED: [&str; 2] = [
+    "columns x, y, z, nx, ny, nz, area, Hc_r, Hc_g, Hc_b and, if there is noise, Hc_se_r, Hc_se_g, Hc_se_b, with a number in every line",
+    "give a file as scenes/README.md describes it with --truth FILE.csv",
+];
 
 impl Reference {
     /// From a file in the form of `scenes/*/truth.csv`: irradiance at the centroids of elements, with their areas.
     pub fn read(path: &Path) -> Result<Self> {
-        let wrong = |found: String| {
-            Error::new(
-                path,
-                found,
-                COLUMNS,
-                "give a file as scenes/README.md describes it with --truth FILE.csv",
-            )
-        };
-        let unreadable = |error: csv::Error| wrong(format!("cannot be read ({error})"));
-        let mut table = csv::Reader::from_path(path).map_err(unreadable)?;
-        let header = table.headers().map_err(unreadable)?.clone();
-        let places: HashMap<&str, usize> =
-            header.iter().enumerate().map(|(place, name)| (name.trim(), place)).collect();
-        let lines: Vec<csv::StringRecord> =
-            table.records().collect::<std::result::Result<_, _>>().map_err(unreadable)?;
-        if lines.is_empty() {
-            return Err(wrong("holds no line below its first".into()));
-        }
-        let column = |name: &str| -> Result<Vec<f64>> {
-            let place = *places.get(name).ok_or_else(|| wrong(format!("has no column {name}")))?;
-            let number = |(row, line): (usize, &csv::StringRecord)| {
-                let field = line.get(place).unwrap_or_default();
-                let number = field.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-                number.ok_or_else(|| wrong(format!("line {} has `{field}` for {name}", row + 2)))
-            };
-            lines.iter().enumerate().map(number).collect()
-        };
-        let rgb = |name: &str| -> Result<Vec<Rgb>> {
-            let [r, g, b] = ["r", "g", "b"].map(|channel| column(&format!("{name}_{channel}")));
-            let (r, g, b) = (r?, g?, b?);
-            Ok((0..r.len()).map(|row| [r[row], g[row], b[row]]).collect())
-        };
-        ["x", "y", "z", "nx", "ny", "nz"].iter().try_for_each(|name| column(name).map(drop))?;
-        let areas = column("area")?;
+        let table = Table::read(path, EXPECTED)?;
+        places(&table)?;
+        let areas = table.numbers("area")?;
         if let Some(row) = areas.iter().position(|&area| area <= 0.0) {
-            return Err(wrong(format!("line {} has an area of {}", row + 2, areas[row])));
+            return Err(table.wrong_line(row, &format!("has an area of {}", areas[row])));
         }
-        let irradiance = rgb("Hc")?;
-        let noise =
-            if places.contains_key("Hc_se_r") { rgb("Hc_se")? } else { vec![[0.0; 3]; irradiance.len()] };
+        let irradiance = table.vectors(["Hc_r", "Hc_g", "Hc_b"])?;
+        let noise = if table.has("Hc_se_r") {
+            table.vectors(["Hc_se_r", "Hc_se_g", "Hc_se_b"])?
+        } else {
+            vec![[0.0; 3]; irradiance.len()]
+        };
         Ok(Self { areas, irradiance, noise })
     }
 
