@@ -30,13 +30,17 @@ pub fn rms_over_mean(placed: &Placed, values: &[Rgb], unit: &[Rgb]) -> f64 {
 
 /// How far the rows of the whole matrix are from summing to one.
 pub fn row_sum_defect(nodes: &[Node]) -> Defect {
-    let of = |node: &Node| -> Vec<f64> {
-        let rows = 0..node.self_block.receivers();
-        rows.map(|i| (node.self_block.row_sum(i) + node.coupling.row_sum(i) - 1.0).abs()).collect()
-    };
-    let defects = nodes.par_iter().map(of).collect::<Vec<_>>().concat();
-    let max = defects.iter().copied().fold(0.0, f64::max);
-    Defect { max, mean: defects.iter().sum::<f64>() / defects.len().max(1) as f64 }
+    let over =
+        nodes.par_iter().map(|node| row_sums(node).map(|sum| sum - 1.0).collect()).collect::<Vec<Vec<f64>>>();
+    let over = over.concat();
+    let max = over.iter().fold(0.0, |max: f64, over| max.max(over.abs()));
+    let mean = over.iter().map(|over| over.abs()).sum::<f64>() / over.len().max(1) as f64;
+    Defect { max, mean, excess: over.into_iter().fold(0.0, f64::max) }
+}
+
+/// Σ_j F_ij of every receiver of an instance, over all senders of the scene.
+pub fn row_sums<'a>(node: &'a Node<'a>) -> impl Iterator<Item = f64> + 'a {
+    (0..node.self_block.receivers()).map(|i| node.self_block.row_sum(i) + node.coupling.row_sum(i))
 }
 
 /// Refuse a scene in which some group of elements keeps all its light for ever and gets more.

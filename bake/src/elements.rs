@@ -4,7 +4,8 @@ use crate::clusters;
 use crate::merge::{Merged, merge};
 use crate::planes::FLATNESS;
 use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted, Rgb, Tints,
+    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted, Rgb, Surface,
+    Tints,
 };
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -41,27 +42,27 @@ pub fn default_size(area: f64) -> ElementSize {
 
 /// Total area of a part's surfaces, both sides of two-sided ones, m².
 pub fn area(part: &Part) -> f64 {
-    let sides = |s: MaterialId| if part.materials[s.index()].double_sided { 2.0 } else { 1.0 };
-    part.surfaces.iter().map(|s| s.corners.double_area_vector().length() / 2.0 * sides(s.material)).sum()
+    let sides = |s: &Surface| if part.is_two_sided(s) { 2.0 } else { 1.0 };
+    part.surfaces.iter().map(|s| s.corners.double_area_vector().length() / 2.0 * sides(s)).sum()
 }
 
 /// The part's elements and faces, in the order of the elements' hierarchy.
 pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
     let panels = panels(part, size);
     let polygons: Vec<Face> = panels.iter().map(|panel| polygon(&panel.corners)).collect();
-    let Merged { faces, of } = merge(&polygons, |_| 0, |_| true);
+    let Merged { faces, of } = merge(&polygons, |_| (), |_| true);
 
     let mut order: Vec<(u32, bool, usize)> = Vec::new();
     for (index, panel) in panels.iter().enumerate() {
         order.push((of[index], false, index));
-        if part.materials[panel.material.index()].double_sided {
+        if panel.two_sided {
             order.push((of[index], true, index));
         }
     }
     order.sort_unstable();
     let mut elements = Vec::new();
     for (face, back, index) in order {
-        let Panel { corners, material } = panels[index];
+        let Panel { corners, material, .. } = panels[index];
         cut_up(&corners, size, |piece| {
             let corners = if back { piece.flipped() } else { piece };
             elements.push(Element::new(corners, material, FaceId(face)));
@@ -102,25 +103,29 @@ fn tinted(colour: Rgb, tint: Rgb) -> Rgb {
 struct Panel {
     corners: Corners,
     material: MaterialId,
+    two_sided: bool,
 }
 
 /// The surfaces themselves, or, where elements have their own size, parallelograms joined to larger ones, so that
 /// elements follow the wall and not the tessellation somebody happened to give it.
 fn panels(part: &Part, size: ElementSize) -> Vec<Panel> {
-    let own = part.surfaces.iter().map(|s| Panel { corners: s.corners, material: s.material });
+    let panel =
+        |s: &Surface| Panel { corners: s.corners, material: s.material, two_sided: part.is_two_sided(s) };
+    let own = part.surfaces.iter().map(panel);
     if size == ElementSize::Mesh {
         return own.collect();
     }
     let (quads, mut panels): (Vec<Panel>, Vec<Panel>) = own.partition(|p| p.corners.as_slice().len() == 4);
     let polygons: Vec<Face> = quads.iter().map(|panel| polygon(&panel.corners)).collect();
-    let Merged { faces, of } = merge(&polygons, |i| quads[i].material.0, is_parallelogram);
-    let mut material = vec![MaterialId(0); faces.len()];
-    for (quad, &face) in quads.iter().zip(&of) {
-        material[face as usize] = quad.material;
+    let Merged { faces, of } =
+        merge(&polygons, |i| (quads[i].material.0, quads[i].two_sided), is_parallelogram);
+    let mut quad_of = vec![0; faces.len()];
+    for (quad, &face) in of.iter().enumerate() {
+        quad_of[face as usize] = quad;
     }
-    panels.extend(faces.iter().zip(material).map(|(face, material)| {
+    panels.extend(faces.iter().zip(quad_of).map(|(face, quad)| {
         let c = &face.corners;
-        Panel { corners: Corners::quad([c[0], c[1], c[2], c[3]]), material }
+        Panel { corners: Corners::quad([c[0], c[1], c[2], c[3]]), ..quads[quad] }
     }));
     panels
 }

@@ -90,17 +90,32 @@ const FINE: i32 = 40;
 impl Seen {
     /// A part at a place.
     pub fn new(part: Known, placement: DAffine3) -> Self {
-        let numbers = placement.to_cols_array();
-        let most = numbers.iter().fold(f64::MIN_POSITIVE, |most: f64, n| most.max(n.abs()));
-        let exponent = most.log2().ceil() as i32 - FINE;
-        let steps = numbers.map(|n| (n / 2f64.powi(exponent)).round() as i64);
+        let (steps, exponent) = in_steps(placement);
         Self { part: part.key, senders: part.senders, steps, exponent }
     }
 
     /// Where it stands, as seen from the one.
     pub fn placement(&self) -> DAffine3 {
-        DAffine3::from_cols_array(&self.steps.map(|step| step as f64 * 2f64.powi(self.exponent)))
+        from_steps(self.steps, self.exponent)
     }
+}
+
+/// A placement without what rounding adds to it.
+pub(crate) fn rounded(placement: DAffine3) -> DAffine3 {
+    let (steps, exponent) = in_steps(placement);
+    from_steps(steps, exponent)
+}
+
+/// A placement in steps of 2^exponent.
+fn in_steps(placement: DAffine3) -> ([i64; 12], i32) {
+    let numbers = placement.to_cols_array();
+    let most = numbers.iter().fold(f64::MIN_POSITIVE, |most: f64, n| most.max(n.abs()));
+    let exponent = most.log2().ceil() as i32 - FINE;
+    (numbers.map(|n| (n / 2f64.powi(exponent)).round() as i64), exponent)
+}
+
+fn from_steps(steps: [i64; 12], exponent: i32) -> DAffine3 {
+    DAffine3::from_cols_array(&steps.map(|step| step as f64 * 2f64.powi(exponent)))
 }
 
 impl std::fmt::Display for Seen {

@@ -7,6 +7,7 @@ use crate::planes::{self, FLATNESS};
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
+use std::hash::Hash;
 
 /// Merged polygons, and which of them each input polygon went into.
 pub struct Merged {
@@ -18,7 +19,11 @@ pub struct Merged {
 
 /// Merge `polygons` (planar, convex, counter-clockwise from the front). Only polygons with equal `kind` may join, and
 /// only where `accept` takes the corners of the union. Polygons share an edge if its ends are equal to the bit.
-pub fn merge(polygons: &[Face], kind: impl Fn(usize) -> u32, accept: impl Fn(&[DVec3]) -> bool) -> Merged {
+pub fn merge<K: Copy + Eq + Hash>(
+    polygons: &[Face],
+    kind: impl Fn(usize) -> K,
+    accept: impl Fn(&[DVec3]) -> bool,
+) -> Merged {
     let planes = planes::group(polygons);
     let mut merger = Merger::new(polygons, |i| (planes[i], kind(i)));
     let strips = strip_directions(polygons, &planes);
@@ -43,23 +48,23 @@ fn strip_directions(polygons: &[Face], planes: &[u32]) -> Vec<DVec3> {
 }
 
 /// Which polygons may join at all: those of the same plane and kind.
-type Class = (u32, u32);
+type Class<K> = (u32, K);
 
-struct Merger {
+struct Merger<K> {
     positions: Vec<DVec3>,
     /// Corner numbers around each polygon; empty once it has gone into another.
     loops: Vec<Vec<u32>>,
-    classes: Vec<Class>,
+    classes: Vec<Class<K>>,
     normals: Vec<DVec3>,
     /// The polygon on the left of each directed edge.
-    left_of: HashMap<(Class, u32, u32), u32>,
+    left_of: HashMap<(Class<K>, u32, u32), u32>,
     /// What each polygon went into; itself while it stands.
     into: Vec<u32>,
     tolerance: f64,
 }
 
-impl Merger {
-    fn new(polygons: &[Face], class: impl Fn(usize) -> Class) -> Self {
+impl<K: Copy + Eq + Hash> Merger<K> {
+    fn new(polygons: &[Face], class: impl Fn(usize) -> Class<K>) -> Self {
         let mut numbers = HashMap::new();
         let mut positions = Vec::new();
         let mut number = |p: DVec3| {

@@ -67,8 +67,9 @@ const MESH: usize = 24;
 const BEND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Occluders {
-    /// The occluders that `faces` make.
-    pub fn new(faces: &[Face]) -> Self {
+    /// The occluders that `faces` make. `lit_behind` tells of each face whether it has elements on its back: a solid that is
+    /// seen from inside, too, hides face by face.
+    pub fn new(faces: &[Face], lit_behind: &[bool]) -> Self {
         let mut all = Vec::new();
         let mut of_face = vec![u32::MAX; faces.len()];
         let mut add = |occluder: Occluder| {
@@ -76,7 +77,8 @@ impl Occluders {
             all.push(occluder);
         };
         for group in connected(faces) {
-            if let Some(solid) = convex_solid(&group, faces) {
+            let hollow = group.iter().any(|&face| lit_behind[face as usize]);
+            if let Some(solid) = convex_solid(&group, faces).filter(|_| !hollow) {
                 add(solid);
             } else if is_curved(&group, faces) {
                 add(Occluder::mesh(group, faces));

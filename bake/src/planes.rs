@@ -14,7 +14,7 @@ pub const FLATNESS: f64 = 2.0 * f32::EPSILON as f64;
 /// A plane number for every face; faces get the same number if all corners of the one lie within the flatness
 /// tolerance of the plane of the other, on either side. Larger faces set the planes: theirs are known best.
 pub fn group(faces: &[Face]) -> Vec<u32> {
-    let tolerance = FLATNESS * largest_coordinate(faces);
+    let tolerance = tolerance(faces.iter().flat_map(|face| &face.corners));
     let mut order: Vec<usize> = (0..faces.len()).collect();
     let sizes: Vec<f64> = faces.iter().map(size).collect();
     order.sort_by(|&a, &b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(&b)));
@@ -40,8 +40,9 @@ pub fn group(faces: &[Face]) -> Vec<u32> {
     of_face
 }
 
-fn largest_coordinate(faces: &[Face]) -> f64 {
-    faces.iter().flat_map(|f| &f.corners).map(|p| p.abs().max_element()).fold(0.0, f64::max)
+/// How far, metres, something may lie off a plane among these points and still count as in it.
+pub fn tolerance<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> f64 {
+    FLATNESS * points.into_iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
 }
 
 fn size(face: &Face) -> f64 {

@@ -3,6 +3,7 @@
 use crate::form_factor::polygon::{Polygon, convex_hull};
 use crate::occluders::Occluders;
 use crate::planes;
+use crate::solids::lit_behind;
 use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
 use std::ops::Range;
@@ -91,7 +92,7 @@ impl World {
             });
         }
         let planes = Planes { in_scene: planes::group(&faces), in_part, instance };
-        let occluders = Occluders::new(&faces);
+        let occluders = Occluders::new(&faces, &lit_behind(&elements, &faces));
         let parents = parents(&nodes);
         Self { elements, faces, planes, nodes, occluders, instances, parents }
     }
@@ -196,7 +197,11 @@ fn place_face(face: &Face, placement: DAffine3) -> Face {
     if placement == DAffine3::IDENTITY {
         return face.clone();
     }
-    Face::new(face.corners.iter().map(|&p| placement.transform_point3(p)).collect())
+    let mut corners: Vec<DVec3> = face.corners.iter().map(|&p| placement.transform_point3(p)).collect();
+    if placement.matrix3.determinant() < 0.0 {
+        corners.reverse();
+    }
+    Face::new(corners)
 }
 
 /// Append the nodes of one instance, whose placed elements are given.

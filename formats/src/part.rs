@@ -35,12 +35,22 @@ pub struct Surface {
     /// Where its corners lie in the author's lightmap (TEXCOORD_1), if there is one; (0, 0) is the upper left corner. A
     /// triangle's last comes twice. One affine map takes all corners there.
     pub lightmap: Option<[DVec2; 4]>,
+    /// Whether its back looks into a closed shell in which nothing shines: it is dark, and has no elements even where the
+    /// material is double-sided.
+    pub back_hidden: bool,
+}
+
+impl Part {
+    /// Whether light may fall on both sides of a surface of this part.
+    pub fn is_two_sided(&self, surface: &Surface) -> bool {
+        self.materials[surface.material.index()].double_sided && !surface.back_hidden
+    }
 }
 
 impl Surface {
     /// A surface without a place in a lightmap.
     pub fn new(corners: Corners, material: MaterialId) -> Self {
-        Self { corners, material, lightmap: None }
+        Self { corners, material, lightmap: None, back_hidden: false }
     }
 
     /// The same surface seen from behind.

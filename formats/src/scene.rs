@@ -22,6 +22,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Lights that are not surfaces.
     pub lights: Vec<PunctualLight>,
+    /// Number of closed shells of two-sided surfaces whose inner sides were hidden, as nothing shines inside.
+    pub hidden_shells: usize,
     /// What was ignored, dropped or repaired on the way in, one sentence each.
     pub notes: Vec<String>,
 }

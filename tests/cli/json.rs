@@ -5,7 +5,7 @@ use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 
 /// Keys that other programs rely on, as JSON pointers.
-const KEYS: [&str; 57] = [
+const KEYS: [&str; 58] = [
     "/scene",
     "/elements",
     "/parts/0/name",
@@ -44,6 +44,7 @@ const KEYS: [&str; 57] = [
     "/energy/escaped/2",
     "/row_sum_defect/max",
     "/row_sum_defect/mean",
+    "/row_sum_defect/excess",
     "/verify",
     "/notes",
     "/outputs",

@@ -2,4 +2,5 @@
 
 mod closed;
 mod curved;
+mod shells;
 mod touching;

@@ -22,7 +22,7 @@ pub struct Side {
 impl Side {
     /// The side of a surface that its corners run around counter-clockwise. The area must be above zero.
     pub fn of(surface: &Surface) -> Self {
-        let Surface { corners, material, lightmap } = *surface;
+        let Surface { corners, material, lightmap, .. } = *surface;
         let double_area = corners.double_area_vector();
         Self {
             corners,
@@ -35,12 +35,12 @@ impl Side {
 
     /// It as a surface.
     pub fn surface(&self) -> Surface {
-        Surface { corners: self.corners, material: self.material, lightmap: self.lightmap }
+        Surface { lightmap: self.lightmap, ..Surface::new(self.corners, self.material) }
     }
 }
 
 /// All sides of `part`, fronts in the order of its surfaces, then backs.
 pub fn sides(part: &Part) -> Vec<Side> {
-    let double = part.surfaces.iter().filter(|s| part.materials[s.material.index()].double_sided);
+    let double = part.surfaces.iter().filter(|surface| part.is_two_sided(surface));
     part.surfaces.iter().map(Side::of).chain(double.map(|surface| Side::of(&surface.flipped()))).collect()
 }

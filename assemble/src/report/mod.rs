@@ -215,6 +215,8 @@ pub struct Defect {
     pub max: f64,
     /// The mean over all rows.
     pub mean: f64,
+    /// By how much the largest sum exceeds one; 0 if none does.
+    pub excess: f64,
 }
 
 /// The comparison with the classic matrix.

@@ -30,6 +30,7 @@ mod repaint;
 mod surfaces;
 mod triangles;
 
+use crate::tidy::tidy;
 use document::Document;
 use drafts::{Draft, Settings};
 use equilux_formats::{Instance, LocalSolver, MaterialId, PartId, Repainted, Result, Scene};
@@ -112,6 +113,7 @@ impl<'a> Stage<'a> {
             instances: Vec::new(),
             cameras: Vec::new(),
             lights: Vec::new(),
+            hidden_shells: 0,
             notes: Vec::new(),
         };
         let meshes = Meshes::of(document);
@@ -125,7 +127,9 @@ impl<'a> Stage<'a> {
         let PartFiles { files, mut notes, asked, .. } = self.part_files;
         asked.note(&mut notes);
         let (sources, notes) = (files.sources, notes.into_sentences());
-        Ok(Scene { sources, notes, parts: self.catalogue.parts, ..self.scene })
+        let mut scene = Scene { sources, notes, parts: self.catalogue.parts, ..self.scene };
+        tidy(&mut scene);
+        Ok(scene)
     }
 
     /// Adds the part that `root` is, then whatever else stands below it.

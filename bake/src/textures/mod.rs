@@ -7,7 +7,7 @@
 mod mean;
 
 use crate::form_factor::polygon::{Polygon, Side, clip};
-use crate::visibility::{BoxTree, Inside};
+use crate::visibility::BoxTree;
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
 use mean::Sums;
@@ -124,18 +124,7 @@ impl<'a> Coat<'a> {
 
     fn near(&self, corners: &[DVec3]) -> Vec<&Sheet<'_>> {
         let (low, high) = bounds(corners);
-        let (mut near, mut open) = (Vec::new(), Vec::from_iter(self.tree.root()));
-        while let Some(index) = open.pop() {
-            let node = self.tree.node(index);
-            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
-                continue;
-            }
-            match self.tree.inside(index) {
-                Inside::Boxes(inner) => open.extend(inner),
-                Inside::Things(things) => near.extend(things.iter().map(|&i| &self.triangles[i as usize])),
-            }
-        }
-        near
+        self.tree.meeting(low, high).into_iter().map(|i| &self.triangles[i as usize]).collect()
     }
 }
 

@@ -39,8 +39,8 @@ pub struct Scissors {
 }
 
 impl Scissors {
-    /// Append to `outside` the pieces of `polygon` that a pyramid does not hide. Planes further than `slack` from all of
-    /// the polygon do not cut it.
+    /// Append to `outside` the pieces of `polygon` that a pyramid does not hide. Corners within `slack` of a plane count as in
+    /// it: of two pyramids that share a plane none leaves a sliver to the other.
     pub fn subtract(
         &mut self,
         polygon: &[DVec3],
@@ -56,7 +56,7 @@ impl Scissors {
         self.inside.clear();
         self.inside.extend_from_slice(polygon);
         for plane in planes {
-            match self.place(plane) {
+            match self.place(plane, slack) {
                 Place::Inside => {}
                 Place::Outside => return outside.push(&self.inside),
                 Place::Across => {
@@ -69,12 +69,17 @@ impl Scissors {
         }
     }
 
-    /// The piece of `polygon` inside a pyramid; empty if there is none.
-    pub fn intersect(&mut self, polygon: &[DVec3], planes: impl Iterator<Item = DVec3>) -> &[DVec3] {
+    /// The piece of `polygon` inside a pyramid; empty if there is none. `slack` as above.
+    pub fn intersect(
+        &mut self,
+        polygon: &[DVec3],
+        planes: impl Iterator<Item = DVec3>,
+        slack: f64,
+    ) -> &[DVec3] {
         self.inside.clear();
         self.inside.extend_from_slice(polygon);
         for plane in planes {
-            match self.place(plane) {
+            match self.place(plane, slack) {
                 Place::Inside => {}
                 Place::Outside => return &[],
                 Place::Across => self.keep(),
@@ -84,7 +89,7 @@ impl Scissors {
     }
 
     /// How what is inside lies to one more plane.
-    fn place(&mut self, plane: DVec3) -> Place {
+    fn place(&mut self, plane: DVec3, slack: f64) -> Place {
         self.distances.clear();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in &self.inside {
@@ -93,9 +98,9 @@ impl Scissors {
             high = if distance > high { distance } else { high };
             self.distances.push(distance);
         }
-        if low >= 0.0 {
+        if low >= -slack {
             Place::Inside
-        } else if high <= 0.0 {
+        } else if high <= slack {
             Place::Outside
         } else {
             Place::Across

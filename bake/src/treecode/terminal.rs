@@ -287,7 +287,7 @@ impl Clipper {
         match chunk.cuts[lane].as_mut_slice() {
             [] if curtains.is_empty() => {}
             [cut] if curtains.is_empty() => {
-                let hidden = self.scissors.intersect(&polygon, cutting(cut));
+                let hidden = self.scissors.intersect(&polygon, cutting(cut), chunk.slack[lane]);
                 if !hidden.is_empty() {
                     sum(hidden, -1.0, values);
                 }

@@ -76,6 +76,22 @@ impl BoxTree {
         }
     }
 
+    /// The things in boxes that a box from `low` to `high` meets; a leaf's things come together.
+    pub fn meeting(&self, low: DVec3, high: DVec3) -> Vec<u32> {
+        let (mut found, mut open) = (Vec::new(), Vec::from_iter(self.root()));
+        while let Some(index) = open.pop() {
+            let node = self.node(index);
+            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
+                continue;
+            }
+            match self.inside(index) {
+                Inside::Boxes(inner) => open.extend(inner),
+                Inside::Things(things) => found.extend_from_slice(things),
+            }
+        }
+        found
+    }
+
     fn fit(&mut self, index: usize, boxes: &[(DVec3, DVec3)]) -> (DVec3, DVec3) {
         let parts: Vec<(DVec3, DVec3)> = match self.inside(index) {
             Inside::Things(things) => things.iter().map(|&thing| boxes[thing as usize]).collect(),

@@ -1,0 +1,161 @@
+//! A surface cut into cells by others that lie in its plane: of each cell it is known which of its sides can be seen.
+//!
+//! All corners are in the coordinates of the surface's part.
+
+use crate::form_factor::polygon::{Polygon, Side, clip};
+use equilux_formats::{Corners, Part, Surface};
+use glam::{DVec2, DVec3};
+
+/// A convex polygon with the side that counts: corners run counter-clockwise seen from there.
+#[derive(Debug, Clone)]
+pub(super) struct Facing {
+    /// Its corners, metres.
+    pub corners: Vec<DVec3>,
+    /// The unit normal of the side.
+    pub normal: DVec3,
+}
+
+impl Facing {
+    /// The sides of `surface` on which light may fall, front first.
+    pub(super) fn sides(part: &Part, surface: &Surface) -> impl Iterator<Item = Self> {
+        let back = part.is_two_sided(surface).then(|| Self::of(&surface.corners.flipped()));
+        std::iter::once(Self::of(&surface.corners)).chain(back)
+    }
+
+    /// The side from which `corners` run counter-clockwise.
+    pub(super) fn of(corners: &Corners) -> Self {
+        Self { corners: corners.as_slice().to_vec(), normal: corners.double_area_vector().normalize() }
+    }
+
+    /// The box around it.
+    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
+        let corners = || self.corners.iter().copied();
+        (corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max))
+    }
+
+    /// Whether two sides lie in one plane and look the same way, and lie on each other by more than `tolerance`, metres.
+    pub(super) fn overlaps(&self, other: &Self, tolerance: f64) -> bool {
+        let [small, large] = if self.reach() < other.reach() { [self, other] } else { [other, self] };
+        let height = |p: &DVec3| large.normal.dot(*p - large.corners[0]).abs();
+        self.normal.dot(other.normal) > 0.0
+            && small.corners.iter().all(|p| height(p) <= tolerance)
+            && !large.common(&small.corners, tolerance).is_empty()
+    }
+
+    fn reach(&self) -> f64 {
+        self.corners.iter().map(|&p| (p - self.corners[0]).length_squared()).fold(0.0, f64::max)
+    }
+
+    /// For each edge, how far a point lies on its inner side.
+    fn edges(&self) -> impl Iterator<Item = impl Fn(DVec3) -> f64> + '_ {
+        let next = |i: usize| self.corners[(i + 1) % self.corners.len()];
+        self.corners.iter().enumerate().map(move |(i, &from)| {
+            let inwards = self.normal.cross(next(i) - from).normalize_or_zero();
+            move |p: DVec3| inwards.dot(p - from)
+        })
+    }
+
+    /// What of `polygon` lies inside the edges by more than `depth`.
+    fn common(&self, polygon: &[DVec3], depth: f64) -> Polygon {
+        let mut rest = Polygon::from_slice(polygon);
+        for edge in self.edges() {
+            match clip(&rest, |p| edge(p) - depth) {
+                Side::All => {}
+                Side::None => return Polygon::new(),
+                Side::Piece(piece) => rest = piece,
+            }
+        }
+        rest
+    }
+}
+
+/// A convex piece of a surface, and which of its sides can be seen.
+#[derive(Debug, Clone)]
+struct Cell {
+    corners: Polygon,
+    front: bool,
+    back: bool,
+}
+
+/// The pieces of `surface` of `part` that can be seen where `covers` lie on it. Pieces narrower than `tolerance`, metres, are
+/// dropped.
+pub(super) fn seen_pieces(part: &Part, surface: &Surface, covers: &[Facing], tolerance: f64) -> Vec<Surface> {
+    let own = Facing::of(&surface.corners);
+    let back = part.is_two_sided(surface);
+    let mut cells = vec![Cell { corners: own.corners.iter().copied().collect(), front: true, back }];
+    for cover in covers {
+        let on_front = cover.normal.dot(own.normal) > 0.0;
+        cells = cells.into_iter().flat_map(|cell| cell.under(cover, on_front, tolerance)).collect();
+    }
+    let is_wide = |cell: &Cell| width(&cell.corners, own.normal) > tolerance;
+    let seen = cells.iter().filter(|cell| (cell.front || cell.back) && is_wide(cell));
+    seen.flat_map(|cell| cell.surfaces(surface)).collect()
+}
+
+impl Cell {
+    /// The cell with the side that a cover lies on hidden where it does.
+    fn under(self, cover: &Facing, on_front: bool, tolerance: f64) -> Vec<Self> {
+        let hides = if on_front { self.front } else { self.back };
+        if !hides || cover.common(&self.corners, tolerance).is_empty() {
+            return vec![self];
+        }
+        let (front, back) = (self.front, self.back);
+        let (mut cells, mut rest) = (Vec::new(), self.corners);
+        for edge in cover.edges() {
+            if let Side::Piece(corners) = clip(&rest, |p| -edge(p)) {
+                cells.push(Self { corners, front, back });
+                match clip(&rest, edge) {
+                    Side::Piece(inside) => rest = inside,
+                    Side::All | Side::None => unreachable!("what is cut lies on both sides"),
+                }
+            }
+        }
+        cells.push(Self { corners: rest, front: front && !on_front, back: back && on_front });
+        cells
+    }
+
+    /// The cell as surfaces of three or four corners that are otherwise like `whole`.
+    fn surfaces(&self, whole: &Surface) -> Vec<Surface> {
+        let pieces = quads(&self.corners).into_iter().map(|corners| Surface {
+            lightmap: whole.lightmap.map(|places| places_of(&corners, &whole.corners, places)),
+            back_hidden: whole.back_hidden || !(self.front && self.back),
+            ..Surface::new(corners, whole.material)
+        });
+        pieces.map(|piece| if self.front { piece } else { piece.flipped() }).collect()
+    }
+}
+
+/// A convex polygon as quads, and a triangle where corners are left.
+fn quads(corners: &[DVec3]) -> Vec<Corners> {
+    let mut pieces = Vec::new();
+    let mut next = 1;
+    while next + 2 < corners.len() {
+        pieces.push(Corners::quad([corners[0], corners[next], corners[next + 1], corners[next + 2]]));
+        next += 2;
+    }
+    if next + 1 < corners.len() {
+        pieces.push(Corners::triangle([corners[0], corners[next], corners[next + 1]]));
+    }
+    pieces
+}
+
+/// Where the corners of a piece lie in the lightmap of the whole, on the affine map of its first three corners.
+fn places_of(piece: &Corners, whole: &Corners, places: [DVec2; 4]) -> [DVec2; 4] {
+    let [a, b, c] = std::array::from_fn(|i| whole.as_slice()[i]);
+    let across = (b - a).cross(c - a);
+    let share = |u: DVec3, v: DVec3| u.cross(v).dot(across) / across.length_squared();
+    let place = |p: DVec3| {
+        let (second, third) = (share(p - a, c - a), share(b - a, p - a));
+        places[0] * (1.0 - second - third) + places[1] * second + places[2] * third
+    };
+    let corners = piece.as_slice();
+    std::array::from_fn(|i| place(corners[i.min(corners.len() - 1)]))
+}
+
+/// About how wide a polygon is where it is narrowest: its area over its longest edge.
+fn width(corners: &[DVec3], normal: DVec3) -> f64 {
+    let from = corners[0];
+    let double_area: DVec3 = corners.windows(2).skip(1).map(|e| (e[0] - from).cross(e[1] - from)).sum();
+    let edges = corners.iter().zip(corners.iter().cycle().skip(1)).map(|(a, b)| (*b - *a).length());
+    double_area.dot(normal) / 2.0 / edges.fold(0.0, f64::max)
+}

@@ -1,0 +1,31 @@
+//! A scene as its file has it → the surfaces of it that light can fall on.
+
+mod cells;
+mod hidden_backs;
+mod overlaps;
+
+use equilux_formats::{PartId, Scene};
+
+/// Takes out of a scene what takes no part in its light.
+pub(crate) fn tidy(scene: &mut Scene) {
+    scene.hidden_shells = hidden_backs::hide_backs(scene);
+    overlaps::cut_overlaps(scene);
+    scene.instances.retain(|instance| !scene.parts[instance.part.index()].surfaces.is_empty());
+    drop_unused_parts(scene);
+}
+
+/// Parts that stand nowhere any more go, and the others are numbered anew.
+fn drop_unused_parts(scene: &mut Scene) {
+    let mut new: Vec<Option<PartId>> = vec![None; scene.parts.len()];
+    scene.instances.iter().for_each(|instance| new[instance.part.index()] = Some(instance.part));
+    let mut number = 0;
+    for id in new.iter_mut().flatten() {
+        *id = PartId::from_index(number);
+        number += 1;
+    }
+    let mut used = new.iter().map(Option::is_some);
+    scene.parts.retain(|_| used.next().expect("one for each part"));
+    for instance in &mut scene.instances {
+        instance.part = new[instance.part.index()].expect("an instance uses its part");
+    }
+}

@@ -1,0 +1,211 @@
+//! Surfaces that lie on each other in one plane and look the same way count once: the first of the scene keeps its place, of
+//! later ones what it covers is cut away. Both would otherwise be seen in every row that sees either.
+//!
+//! What is cut within a part is cut for all of its instances. What another instance covers makes another part of an
+//! instance, the same one for all that are covered alike.
+
+use super::cells::{Facing, seen_pieces};
+use crate::keys::rounded;
+use crate::planes;
+use crate::visibility::BoxTree;
+use equilux_formats::{Instance, Part, PartId, Scene, Surface};
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+
+/// More pairs of parts than this are counted instead of named.
+const NAMED: usize = 3;
+
+/// Cuts away what is covered, and says so.
+pub(super) fn cut_overlaps(scene: &mut Scene) {
+    let mut notes = Vec::new();
+    for part in &mut scene.parts {
+        let count = cut_within(part);
+        if count > 0 {
+            notes.push(format!("{} of `{}` {} on others of it", faces(count), part.name, lie(count)));
+        }
+    }
+    notes.extend(cut_across(scene));
+    let more = notes.len().saturating_sub(NAMED);
+    notes.truncate(NAMED);
+    let sentence = |what: String| {
+        format!(
+            "{what} in one plane: what lies there first was kept, and of the others what it covers was cut away; move them apart"
+        )
+    };
+    scene.notes.extend(notes.into_iter().map(sentence));
+    if more > 0 {
+        scene.notes.push(format!(
+            "faces of {more} more parts or pairs of parts lie on each other in one plane and were cut"
+        ));
+    }
+}
+
+fn faces(count: usize) -> String {
+    if count == 1 { "1 face".to_owned() } else { format!("{count} faces") }
+}
+
+fn lie(count: usize) -> &'static str {
+    if count == 1 { "lies" } else { "lie" }
+}
+
+/// Sides of surfaces that can be searched by place.
+struct Sides {
+    /// The surface of each side, and the side.
+    all: Vec<(usize, Facing)>,
+    tree: BoxTree,
+}
+
+impl Sides {
+    /// The sides of the surfaces of a part, where `is_wanted` takes their boxes.
+    fn of(part: &Part, is_wanted: impl Fn(DVec3, DVec3) -> bool) -> Self {
+        let sides = part.surfaces.iter().enumerate();
+        let sides =
+            sides.flat_map(|(number, surface)| Facing::sides(part, surface).map(move |side| (number, side)));
+        let all: Vec<(usize, Facing)> = sides
+            .filter(|(_, side)| {
+                let (low, high) = side.bounds();
+                is_wanted(low, high)
+            })
+            .collect();
+        let boxes: Vec<(DVec3, DVec3)> = all.iter().map(|(_, side)| side.bounds()).collect();
+        Self { tree: BoxTree::new(&boxes), all }
+    }
+
+    /// Those that lie on `side`, of surfaces that `counts` takes, by rising number.
+    fn on(&self, side: &Facing, tolerance: f64, counts: impl Fn(usize) -> bool) -> Vec<usize> {
+        let (low, high) = side.bounds();
+        let near = self.tree.meeting(low - tolerance, high + tolerance).into_iter().map(|i| i as usize);
+        let mut on: Vec<usize> =
+            near.filter(|&i| counts(self.all[i].0) && self.all[i].1.overlaps(side, tolerance)).collect();
+        on.sort_unstable();
+        on
+    }
+}
+
+/// Cuts away what earlier surfaces of the part cover, and returns of how many surfaces.
+fn cut_within(part: &mut Part) -> usize {
+    let corners = || part.surfaces.iter().flat_map(|surface| surface.corners.as_slice());
+    let tolerance = planes::tolerance(corners());
+    let sides = Sides::of(part, |_, _| true);
+    let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
+    for (surface, side) in &sides.all {
+        for on in sides.on(side, tolerance, |other| other < *surface) {
+            covers.entry(*surface).or_default().push(sides.all[on].1.clone());
+        }
+    }
+    part.surfaces = cut(part, &covers, tolerance);
+    covers.len()
+}
+
+/// The surfaces of a part where some of them are covered.
+fn cut(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>, tolerance: f64) -> Vec<Surface> {
+    let pieces = |(number, surface): (usize, &Surface)| match covers.get(&number) {
+        Some(covers) => seen_pieces(part, surface, covers, tolerance),
+        None => vec![*surface],
+    };
+    part.surfaces.iter().enumerate().flat_map(pieces).collect()
+}
+
+/// Cuts away what earlier instances cover, and says who covers whom.
+fn cut_across(scene: &mut Scene) -> Vec<String> {
+    let bounds: Vec<(DVec3, DVec3)> =
+        scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
+    let tolerance = planes::tolerance(bounds.iter().flat_map(|(low, high)| [low, high]));
+    let tree = BoxTree::new(&bounds);
+    let (mut variants, mut notes) = (Variants::default(), Vec::new());
+    for number in 0..scene.instances.len() {
+        let (low, high) = bounds[number];
+        let mut near: Vec<usize> =
+            tree.meeting(low - tolerance, high + tolerance).into_iter().map(|other| other as usize).collect();
+        near.retain(|&other| other < number && meet(bounds[other], bounds[number], tolerance));
+        near.sort_unstable();
+        let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
+        for other in near {
+            let found = covered_by(scene, number, other, tolerance);
+            if !found.is_empty() {
+                let [own, other] = [number, other].map(|k| &scene.instances[k].name);
+                notes.push(format!("{} of `{own}` {} on `{other}`", faces(found.len()), lie(found.len())));
+            }
+            found.into_iter().for_each(|(surface, cover)| covers.entry(surface).or_default().extend(cover));
+        }
+        if !covers.is_empty() {
+            let scale = scale(&scene.instances[number]);
+            let part = scene.instances[number].part;
+            let surfaces = cut(&scene.parts[part.index()], &covers, tolerance / scale);
+            scene.instances[number].part = variants.part(&mut scene.parts, part, surfaces);
+        }
+    }
+    notes
+}
+
+fn meet(a: (DVec3, DVec3), b: (DVec3, DVec3), tolerance: f64) -> bool {
+    (a.0 - tolerance).cmple(b.1).all() && (b.0 - tolerance).cmple(a.1).all()
+}
+
+/// By surface of instance `own` the sides of instance `other` that lie on it, in the coordinates of `own`.
+fn covered_by(scene: &Scene, own: usize, other: usize, tolerance: f64) -> BTreeMap<usize, Vec<Facing>> {
+    let [(own, part), (other, other_part)] =
+        [own, other].map(|k| (&scene.instances[k], &scene.parts[scene.instances[k].part.index()]));
+    let tolerance = tolerance / scale(own);
+    let to_own = rounded(own.placement.inverse() * other.placement);
+    let (low, high) = part_bounds(part);
+    let moved = Part {
+        surfaces: other_part.surfaces.iter().map(|surface| surface.placed(to_own)).collect(),
+        ..other_part.clone()
+    };
+    let is_near = |a: DVec3, b: DVec3| meet((a, b), (low, high), tolerance);
+    let sides = Sides::of(&moved, is_near);
+    let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
+    if sides.all.is_empty() {
+        return covers;
+    }
+    for (number, surface) in part.surfaces.iter().enumerate() {
+        for side in Facing::sides(part, surface) {
+            let on = sides.on(&side, tolerance, |_| true);
+            if !on.is_empty() {
+                covers.entry(number).or_default().extend(on.into_iter().map(|i| sides.all[i].1.clone()));
+            }
+        }
+    }
+    covers
+}
+
+fn scale(instance: &Instance) -> f64 {
+    instance.placement.matrix3.determinant().abs().cbrt()
+}
+
+fn part_bounds(part: &Part) -> (DVec3, DVec3) {
+    let corners = || part.surfaces.iter().flat_map(|surface| surface.corners.as_slice()).copied();
+    (corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max))
+}
+
+fn placed_bounds(parts: &[Part], instance: &Instance) -> (DVec3, DVec3) {
+    let (low, high) = part_bounds(&parts[instance.part.index()]);
+    let DAffine3 { matrix3, .. } = instance.placement;
+    let centre = instance.placement.transform_point3((low + high) / 2.0);
+    let half = (high - low) / 2.0;
+    let reach = matrix3.x_axis.abs() * half.x + matrix3.y_axis.abs() * half.y + matrix3.z_axis.abs() * half.z;
+    (centre - reach, centre + reach)
+}
+
+/// Parts that were made of others by cutting.
+#[derive(Default)]
+struct Variants {
+    /// By the part that was cut.
+    of: BTreeMap<u32, Vec<PartId>>,
+}
+
+impl Variants {
+    /// `part` with these surfaces instead of its own.
+    fn part(&mut self, parts: &mut Vec<Part>, part: PartId, surfaces: Vec<Surface>) -> PartId {
+        let known = self.of.entry(part.0).or_default();
+        if let Some(&same) = known.iter().find(|id| parts[id.index()].surfaces == surfaces) {
+            return same;
+        }
+        let name = format!("{} (cut {})", parts[part.index()].name, known.len() + 1);
+        let id = PartId::from_index(parts.len());
+        known.push(id);
+        parts.push(Part { name, surfaces, ..parts[part.index()].clone() });
+        id
+    }
+}
