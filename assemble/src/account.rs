@@ -2,7 +2,7 @@
 
 use crate::exchange::Node;
 use crate::placed::Placed;
-use crate::proof::enclosure::{Kept, is_compressed};
+use crate::proof::enclosure::{OFF, is_compressed};
 use crate::report::Defect;
 use equilux_bake::equilibrium::added;
 use equilux_bake::equilibrium::endless::endless_light;
@@ -50,14 +50,13 @@ pub fn refuse_endless_light(placed: &Placed, nodes: &[Node], optics: &Optics, fi
         .enumerate()
         .flat_map(|(k, n)| (0..n.self_block.receivers()).map(move |i| (k, i)))
         .collect();
-    let kept = is_compressed(nodes).then(|| Kept::of(nodes));
+    // What a row may lack counts as staying: clusters must not open a closed scene.
+    let lack = is_compressed(nodes).then_some(OFF);
     let rows = |element: usize| {
         let (k, i) = place[element];
         let first = placed.world.nodes_of(k).start;
         let own = nodes[k].self_block.row(i).map(|(j, f)| (j + first, f));
-        // What a row may lack counts as staying: clusters must not open a closed scene.
-        let lack = kept.as_ref().map(|kept| (element, kept.lack(k, i)));
-        let mut row: Vec<(usize, f64)> = lack.into_iter().collect();
+        let mut row: Vec<(usize, f64)> = lack.map(|lack| (element, lack)).into_iter().collect();
         for (node, value) in own.chain(nodes[k].coupling.row(i)) {
             spread(placed, node, &mut |element, share| row.push((element, value * share)));
         }

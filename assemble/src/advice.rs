@@ -23,6 +23,7 @@ use equilux_bake::prepare::{Preparation, Prepared, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Error, Instance, Result, Rgb, Scene, Store};
+use glam::DVec3;
 use serde::Serialize;
 use std::time::Instant;
 
@@ -98,7 +99,7 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
     let start = Instant::now();
     let scene = import_scene(&job.scene)?;
     job.check(&scene)?;
-    job.tables()?;
+    job.tables(DVec3::ZERO)?;
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let tolerance = (TOLERANCE.0 * target).min(TOLERANCE.1);

@@ -36,7 +36,8 @@ fn table(out: &mut dyn Write, light: &SceneLight) -> io::Result<()> {
 
 fn numbers(light: &SceneLight, index: usize) -> impl Iterator<Item = f64> {
     let element = &light.world.elements[index];
-    let place = [element.centroid.to_array(), element.normal.to_array()].into_iter().flatten();
+    let place =
+        [(element.centroid + light.origin).to_array(), element.normal.to_array()].into_iter().flatten();
     let rows = [light.reflectance, light.emission, light.irradiance, light.radiosity].map(|rows| rows[index]);
     place.chain([element.area]).chain(rows.into_iter().flatten())
 }

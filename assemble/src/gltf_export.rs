@@ -53,15 +53,32 @@ fn model(light: &SceneLight, exposure: Exposure) -> (Value, Vec<u8>) {
         accessors.extend(piece.accessors(vertices.len()));
         piece.append_to(&mut vertices);
     }
-    (document(nodes, meshes, accessors, vertices.len()), vertices)
+    let roots = under_origin(&mut nodes, light.origin);
+    (document(nodes, roots, meshes, accessors, vertices.len()), vertices)
 }
 
-fn document(nodes: Vec<Value>, meshes: Vec<Value>, accessors: Vec<Value>, bytes: usize) -> Value {
+/// Puts all `nodes` under one that moves them to `origin`, where that is elsewhere, and returns the roots of the scene.
+pub(crate) fn under_origin(nodes: &mut Vec<Value>, origin: DVec3) -> Vec<usize> {
+    let all: Vec<usize> = (0..nodes.len()).collect();
+    if origin == DVec3::ZERO {
+        return all;
+    }
+    nodes.push(json!({ "name": "origin", "translation": origin.to_array(), "children": all }));
+    vec![nodes.len() - 1]
+}
+
+fn document(
+    nodes: Vec<Value>,
+    roots: Vec<usize>,
+    meshes: Vec<Value>,
+    accessors: Vec<Value>,
+    bytes: usize,
+) -> Value {
     json!({
         "asset": { "version": "2.0", "generator": "Equilux" },
         "extensionsUsed": ["KHR_materials_unlit"],
         "scene": 0,
-        "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
+        "scenes": [{ "nodes": roots }],
         "nodes": nodes,
         "meshes": meshes,
         "materials": [{

@@ -19,6 +19,7 @@ use crate::{elements_csv, gltf_export};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Error, Result, Rgb, Scene};
+use glam::DVec3;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -105,15 +106,15 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
         lines.extend(draw_all(job, &folder, light, &canvas, exposure, monitor)?);
         exposure
     };
-    let mut written = write_tables(job, &folder, light, exposure)?;
+    let mut written = write_tables(job, &folder, scene.origin, light, exposure)?;
     let lightmaps = write_lightmaps(job, &folder, scene, light, exposure, monitor)?;
     let start = Instant::now();
-    let points = write_points(&folder, light, monitor)?;
+    let points = write_points(&folder, scene.origin, light, monitor)?;
     let point_time = start.elapsed();
     let mut notes = Vec::new();
     if let Some(shot) = &job.shot {
         let lit = (light.equation, light.outcome);
-        let drawn = render::draw(shot, light.against, &scene.cameras, lit, &folder, &job.scene)?;
+        let drawn = render::draw(shot, light.against, scene, lit, &folder)?;
         written.extend(drawn.paths);
         notes.extend(drawn.notes);
     }
@@ -125,7 +126,7 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     Ok(Written { paths: lines, notes, point_time })
 }
 
-fn write_points(folder: &Path, light: &Light, monitor: &Monitor) -> Result<Option<Saved>> {
+fn write_points(folder: &Path, origin: DVec3, light: &Light, monitor: &Monitor) -> Result<Option<Saved>> {
     let Some(places) = light.places else { return Ok(None) };
     let gather = light.equation.gather(&light.outcome.radiosity);
     let elements = &light.equation.placed.world.elements;
@@ -134,7 +135,7 @@ fn write_points(folder: &Path, light: &Light, monitor: &Monitor) -> Result<Optio
         return Ok(Some(Saved { paths: vec![], notes: vec![note] }));
     };
     let path = folder.join(POINTS);
-    points::write(&path, places, &lights, &light.outcome.irradiance)?;
+    points::write(&path, places, origin, &lights, &light.outcome.irradiance)?;
     let lost = lights.iter().filter(|light| light.is_none()).count();
     let notes = match lost {
         0 => vec![],
@@ -216,13 +217,20 @@ fn picture_of(round: usize) -> String {
     format!("round-{round:03}.png")
 }
 
-fn write_tables(job: &Job, folder: &Path, light: &Light, exposure: Exposure) -> Result<Vec<PathBuf>> {
+fn write_tables(
+    job: &Job,
+    folder: &Path,
+    origin: DVec3,
+    light: &Light,
+    exposure: Exposure,
+) -> Result<Vec<PathBuf>> {
     let placed = &light.equation.placed;
     let part_names: Vec<String> =
         (0..placed.instances.len()).map(|k| placed.part_of(k).part.name.clone()).collect();
     let instance_names: Vec<String> = placed.instances.iter().map(|i| i.name.clone()).collect();
     let scene_light = SceneLight {
         world: &placed.world,
+        origin,
         reflectance: &light.equation.optics.reflectance,
         emission: &light.equation.optics.emission,
         irradiance: &light.outcome.irradiance,

@@ -29,7 +29,7 @@ const BATCH: usize = 256;
 /// A place on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Where, metres.
+    /// Where, scene coordinates, metres.
     pub point: DVec3,
     /// The way the surface looks, unit length.
     pub normal: DVec3,
@@ -51,25 +51,26 @@ const EXPECTED: [&str; 2] = [
 ];
 
 /// Read the places of a table with the columns `x`, `y`, `z`, `nx`, `ny` and `nz`; others are ignored. Fails if the file cannot
-/// be read, has no such columns or holds what is no finite number.
-pub fn read(file: &Path) -> Result<Vec<Place>> {
-    places(&Table::read(file, EXPECTED)?)
+/// be read, has no such columns or holds what is no finite number. Tables are in the coordinates of the scene's file, in which
+/// those of the scene begin at `origin`.
+pub fn read(file: &Path, origin: DVec3) -> Result<Vec<Place>> {
+    places(&Table::read(file, EXPECTED)?, origin)
 }
 
 /// Read places and their irradiance, W/m², from `Hc_r`, `Hc_g` and `Hc_b` or from `H_r`, `H_g` and `H_b`. Fails as [`read`] does.
-pub fn read_light(file: &Path) -> Result<(Vec<Place>, Vec<Rgb>)> {
+pub fn read_light(file: &Path, origin: DVec3) -> Result<(Vec<Place>, Vec<Rgb>)> {
     let table = Table::read(file, EXPECTED)?;
     let names = if table.has("Hc_r") { ["Hc_r", "Hc_g", "Hc_b"] } else { ["H_r", "H_g", "H_b"] };
-    Ok((places(&table)?, table.vectors(names)?))
+    Ok((places(&table, origin)?, table.vectors(names)?))
 }
 
 /// The places of a table that is read. Fails as [`read`] does.
-pub fn places(table: &Table) -> Result<Vec<Place>> {
+pub fn places(table: &Table, origin: DVec3) -> Result<Vec<Place>> {
     let (points, normals) = (table.vectors(["x", "y", "z"])?, table.vectors(["nx", "ny", "nz"])?);
     let place = |(row, (point, normal)): (usize, ([f64; 3], [f64; 3]))| {
         let normal = DVec3::from(normal).try_normalize();
         let normal = normal.ok_or_else(|| table.wrong_line(row, "has no normal"))?;
-        Ok(Place { point: point.into(), normal })
+        Ok(Place { point: DVec3::from(point) - origin, normal })
     };
     points.into_iter().zip(normals).enumerate().map(place).collect()
 }
@@ -124,21 +125,29 @@ pub fn located(elements: &[Element], places: &[Place]) -> Vec<Option<(Element, u
     places.par_iter().map(locate).collect()
 }
 
-/// Write the table of places with their light. `irradiance`: that of all elements, W/m². Fails if it cannot be written.
-pub fn write(path: &Path, places: &[Place], lights: &[Option<PointLight>], irradiance: &[Rgb]) -> Result<()> {
-    output_file::write(path, |out| table(out, places, lights, irradiance))
+/// Write the table of places, in the coordinates that they were read in, with their light. `irradiance`: that of all
+/// elements, W/m². Fails if it cannot be written.
+pub fn write(
+    path: &Path,
+    places: &[Place],
+    origin: DVec3,
+    lights: &[Option<PointLight>],
+    irradiance: &[Rgb],
+) -> Result<()> {
+    output_file::write(path, |out| table(out, places, origin, lights, irradiance))
 }
 
 fn table(
     out: &mut dyn Write,
     places: &[Place],
+    origin: DVec3,
     lights: &[Option<PointLight>],
     irradiance: &[Rgb],
 ) -> io::Result<()> {
     writeln!(out, "{HEADER}")?;
     let joined = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
     for (place, light) in places.iter().zip(lights) {
-        let at = joined(&[place.point.to_array(), place.normal.to_array()].concat());
+        let at = joined(&[(place.point + origin).to_array(), place.normal.to_array()].concat());
         match light {
             Some(PointLight { element, irradiance: h }) => {
                 writeln!(out, "{at},{},{element},{}", joined(h), joined(&irradiance[*element]))?;

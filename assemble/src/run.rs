@@ -25,6 +25,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Preparation, prepare};
 use equilux_bake::{depfile, stamp};
 use equilux_formats::{Result, Scene, Store, Swept};
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -97,11 +98,12 @@ impl Job {
         self.shot.as_ref().map_or(Ok(()), |shot| shot.check(&scene.cameras, &self.scene))
     }
 
-    /// The places to tell the light of and the light to compare with, where they are asked for.
-    pub fn tables(&self) -> Result<(Option<Vec<Place>>, Option<Reference>)> {
+    /// The places to tell the light of and the light to compare with, where they are asked for, in scene coordinates, which
+    /// begin at `origin` in those of the tables.
+    pub fn tables(&self, origin: DVec3) -> Result<(Option<Vec<Place>>, Option<Reference>)> {
         let against = self.shot.as_ref().and_then(|shot| shot.against.as_deref());
-        let places = self.points.as_deref().map(points::read).transpose()?;
-        Ok((places, against.map(Reference::read).transpose()?))
+        let places = self.points.as_deref().map(|file| points::read(file, origin)).transpose()?;
+        Ok((places, against.map(|file| Reference::read(file, origin)).transpose()?))
     }
 }
 
@@ -118,7 +120,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let prepared = prepare(&scene, &job.preparation)?;
     job.check(&scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
-    let (places, against) = job.tables()?;
+    let (places, against) = job.tables(scene.origin)?;
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let store = Store::open(&job.cache)?;
     let element_size = prepared.element_size.to_string();

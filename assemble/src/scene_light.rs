@@ -2,12 +2,15 @@
 
 use equilux_bake::world::World;
 use equilux_formats::Rgb;
+use glam::DVec3;
 
 /// Placed elements, the light on them, and the names to tell about them. Per-element slices follow `world.elements`.
 #[derive(Clone, Copy)]
 pub struct SceneLight<'a> {
     /// The placed elements, in scene coordinates, metres.
     pub world: &'a World,
+    /// Where scene coordinates begin in those of the scene's file, metres.
+    pub origin: DVec3,
     /// Diffuse reflectance ρ, 0..1, one row an element.
     pub reflectance: &'a [Rgb],
     /// Emission E, W/m², scaled as each instance asks, one row an element.

@@ -177,6 +177,7 @@ impl Fixture {
         let [part_names, instance_names] = &self.names;
         SceneLight {
             world: &self.world,
+            origin: DVec3::ZERO,
             reflectance,
             emission,
             irradiance,

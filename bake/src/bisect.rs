@@ -13,7 +13,7 @@ use glam::DVec3;
 pub struct Cut {
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// Where on the axis, metres, scene coordinates.
+    /// Where on the axis, metres.
     pub offset: f64,
 }
 

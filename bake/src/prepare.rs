@@ -92,7 +92,11 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     Ok(match &wanted.division {
         Division::Authored => authored,
         Division::Bisect(count) => divided(&authored, wanted, scene, |whole| bisect(whole, *count)),
-        Division::Cuts(planes) => divided(&authored, wanted, scene, |whole| cut_all(whole, planes)),
+        Division::Cuts(planes) => {
+            let here = |cut: &Cut| Cut { offset: cut.offset - scene.origin[cut.axis], ..*cut };
+            let planes: Vec<Cut> = planes.iter().map(here).collect();
+            divided(&authored, wanted, scene, |whole| cut_all(whole, &planes))
+        }
     })
 }
 

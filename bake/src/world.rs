@@ -165,6 +165,13 @@ impl World {
         self.instances.partition_point(|placed| placed.nodes.end <= node)
     }
 
+    /// The node of an element.
+    pub fn node_of(&self, element: usize) -> usize {
+        let instance = self.instances.partition_point(|placed| placed.elements.end <= element);
+        let placed = &self.instances[instance];
+        element - placed.elements.start + placed.nodes.start
+    }
+
     /// The element of a node, if it is one.
     pub fn element_of(&self, node: usize) -> Option<usize> {
         let placed = &self.instances[self.instance_of_node(node)];

@@ -372,7 +372,12 @@ fn parts_start_at_zero_and_far_ones_keep_their_digits() {
     assert_eq!(scene.parts[0].name, "far");
     let corners: Vec<DVec3> = scene.parts[0].surfaces[0].corners.as_slice().to_vec();
     assert_eq!(corners, square()[0]);
-    assert_eq!(scene.instances[0].placement, DAffine3::from_translation(DVec3::new(1e6, -1e6, 3.0)));
+    let file_from_part = DAffine3::from_translation(scene.origin) * scene.instances[0].placement;
+    assert_eq!(file_from_part, DAffine3::from_translation(DVec3::new(1e6, -1e6, 3.0)));
+    assert!(
+        scene.instances[0].placement.translation.length() < 100.0,
+        "the scene is moved close to its origin"
+    );
     assert!(noted(&scene, "digits"), "{:?}", scene.notes);
 }
 

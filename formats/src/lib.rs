@@ -27,7 +27,7 @@ pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics, Tints};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
-pub use rows::{Precision, Rgb, RowGroup, Rows};
+pub use rows::{Precision, Rgb, RowGroup, Rows, SINGLE_ROUNDING};
 pub use scene::{Camera, Instance, LightKind, PunctualLight, Repainted, Scene};
 pub use solution::{Solution, SolvedInstance};
 pub use store::{Lookup, Store, Swept, Tally, Turn};

@@ -17,10 +17,12 @@ pub type Rgb = [f64; 3];
 pub enum Precision {
     /// f64, as computed.
     Full,
-    /// Whole steps of 1/65535 of the row's largest entry. What rounding takes from one entry it gives to the next, so
-    /// that the row's sum is kept to one step.
-    Steps,
+    /// f32: each entry and each sum of entries is kept to [`SINGLE_ROUNDING`] of itself.
+    Single,
 }
+
+/// How far an entry that is kept as f32 may be off, relative: half a unit in the last place.
+pub const SINGLE_ROUNDING: f64 = f32::EPSILON as f64 / 2.0;
 
 /// Rows of neighbouring receivers before they go into a block.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -31,8 +33,6 @@ pub struct RowGroup {
     pub values: Vec<f64>,
     /// Number of receivers.
     pub receivers: usize,
-    /// Steps to keep the numbers in, one a receiver, if they were kept in these before; without any, what suits each row.
-    pub steps: Option<Vec<f64>>,
 }
 
 /// A block of exact form factors, `receivers × senders`.
@@ -55,7 +55,7 @@ struct Extent {
 #[derive(Debug, Clone, PartialEq)]
 enum Values {
     Full(Vec<f64>),
-    Steps { steps: Vec<u16>, unit: Vec<f64> },
+    Single(Vec<f32>),
 }
 
 /// A block as plain arrays: sizes of the groups, their columns, and the numbers in one of two forms.
@@ -63,8 +63,7 @@ pub(crate) struct Arrays<'a> {
     pub sizes: Vec<u32>,
     pub columns: &'a [u32],
     pub full: &'a [f64],
-    pub steps: &'a [u16],
-    pub units: &'a [f64],
+    pub single: &'a [f32],
 }
 
 impl Rows {
@@ -72,7 +71,7 @@ impl Rows {
     pub fn from_rows(senders: usize, rows: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Self {
         let group = |row: Vec<(u32, f64)>| {
             let (columns, values) = row.into_iter().unzip();
-            RowGroup { columns, values, receivers: 1, steps: None }
+            RowGroup { columns, values, receivers: 1 }
         };
         Self::from_groups(senders, rows.into_iter().map(group), Precision::Full)
     }
@@ -89,7 +88,7 @@ impl Rows {
             columns: vec![],
             values: match precision {
                 Precision::Full => Values::Full(vec![]),
-                Precision::Steps => Values::Steps { steps: vec![], unit: vec![] },
+                Precision::Single => Values::Single(vec![]),
             },
         };
         for group in groups {
@@ -113,13 +112,7 @@ impl Rows {
         });
         match &mut self.values {
             Values::Full(values) => values.extend_from_slice(&group.values),
-            Values::Steps { steps, unit } => {
-                for receiver in 0..group.receivers {
-                    let row = &group.values[receiver * group.columns.len()..][..group.columns.len()];
-                    let before = group.steps.as_ref().map(|before| before[receiver]);
-                    unit.push(quantise(row, before, steps));
-                }
-            }
+            Values::Single(values) => values.extend(group.values.iter().map(|&value| value as f32)),
         }
         self.columns.extend_from_slice(&group.columns);
     }
@@ -143,7 +136,7 @@ impl Rows {
     pub fn precision(&self) -> Precision {
         match self.values {
             Values::Full(_) => Precision::Full,
-            Values::Steps { .. } => Precision::Steps,
+            Values::Single(_) => Precision::Single,
         }
     }
 
@@ -151,16 +144,16 @@ impl Rows {
     pub fn bytes(&self) -> usize {
         let values = match &self.values {
             Values::Full(values) => values.len() * 8,
-            Values::Steps { steps, unit } => steps.len() * 2 + unit.len() * 8,
+            Values::Single(values) => values.len() * 4,
         };
         self.groups.len() * size_of::<Extent>() + self.columns.len() * 4 + values
     }
 
-    /// No entry of a row is further than this from what was computed: a step, or nothing.
-    pub fn step_of(&self, receiver: usize) -> f64 {
-        match &self.values {
-            Values::Full(_) => 0.0,
-            Values::Steps { unit, .. } => unit[receiver],
+    /// No entry of a row is further than this from what was computed, relative.
+    pub fn rounding(&self) -> f64 {
+        match self.precision() {
+            Precision::Full => 0.0,
+            Precision::Single => SINGLE_ROUNDING,
         }
     }
 
@@ -178,11 +171,8 @@ impl Rows {
     pub fn values_of(&self, group: usize) -> (&[u32], Vec<f64>) {
         let columns = self.columns_of(group);
         let first = self.groups[group].value;
-        let row = |(k, receiver): (usize, usize)| {
-            let from = first + k * columns.len();
-            (from..from + columns.len()).map(move |index| self.value(index, receiver))
-        };
-        (columns, self.receivers_of(group).enumerate().flat_map(row).collect())
+        let end = first + self.receivers_of(group).len() * columns.len();
+        (columns, (first..end).map(|index| self.value(index)).collect())
     }
 
     /// The receivers of a group.
@@ -194,12 +184,11 @@ impl Rows {
     pub fn row(&self, receiver: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let columns = self.columns_of(self.group_of(receiver));
         let first = self.range_of(receiver).start;
-        let pairs =
-            columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k, receiver)));
+        let pairs = columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k)));
         pairs.filter(|&(_, value)| value != 0.0)
     }
 
-    /// The senders that any receiver sees, in no order, some of them often; with them those that are too small for a step.
+    /// The senders that any receiver sees, in no order, some of them often.
     pub fn senders_seen(&self) -> impl Iterator<Item = usize> + '_ {
         self.columns.iter().map(|&column| column as usize)
     }
@@ -209,9 +198,7 @@ impl Rows {
         let range = self.range_of(receiver);
         match &self.values {
             Values::Full(values) => values[range].iter().sum(),
-            Values::Steps { steps, unit } => {
-                steps[range].iter().map(|&step| u64::from(step)).sum::<u64>() as f64 * unit[receiver]
-            }
+            Values::Single(values) => values[range].iter().map(|&value| f64::from(value)).sum(),
         }
     }
 
@@ -220,7 +207,7 @@ impl Rows {
         let range = self.range_of(receiver);
         match &self.values {
             Values::Full(values) => values[range].iter().filter(|&&value| value != 0.0).count(),
-            Values::Steps { steps, .. } => steps[range].iter().filter(|&&step| step != 0).count(),
+            Values::Single(values) => values[range].iter().filter(|&&value| value != 0.0).count(),
         }
     }
 
@@ -242,10 +229,8 @@ impl Rows {
         let range = first..first + receivers.len() * seen.len();
         match &self.values {
             Values::Full(values) => products(&values[range], &seen, receivers.len(), |&value| value),
-            Values::Steps { steps, unit } => {
-                let mut sums = products(&steps[range], &seen, receivers.len(), |&step| f64::from(step));
-                sums.iter_mut().zip(&unit[receivers]).for_each(|(sum, unit)| *sum = sum.map(|s| s * unit));
-                sums
+            Values::Single(values) => {
+                products(&values[range], &seen, receivers.len(), |&value| f64::from(value))
             }
         }
     }
@@ -260,13 +245,12 @@ impl Rows {
         let columns = self.columns_of(group);
         let first = self.groups[group].value;
         let mut sums = vec![[0.0; N]; columns.len()];
-        for (row, (receiver, weight)) in self.receivers_of(group).zip(weights).enumerate() {
+        for (row, weight) in weights.iter().enumerate() {
             let range = first + row * columns.len()..first + (row + 1) * columns.len();
             match &self.values {
                 Values::Full(values) => spread(values[range].iter().copied(), weight, &mut sums),
-                Values::Steps { steps, unit } => {
-                    let unit = unit[receiver];
-                    spread(steps[range].iter().map(|&s| f64::from(s) * unit), weight, &mut sums);
+                Values::Single(values) => {
+                    spread(values[range].iter().map(|&value| f64::from(value)), weight, &mut sums);
                 }
             }
         }
@@ -277,10 +261,10 @@ impl Rows {
         &self.columns[self.groups[group].column..self.groups[group + 1].column]
     }
 
-    fn value(&self, index: usize, receiver: usize) -> f64 {
+    fn value(&self, index: usize) -> f64 {
         match &self.values {
             Values::Full(values) => values[index],
-            Values::Steps { steps, unit } => f64::from(steps[index]) * unit[receiver],
+            Values::Single(values) => f64::from(values[index]),
         }
     }
 
@@ -289,11 +273,11 @@ impl Rows {
             .groups
             .windows(2)
             .flat_map(|g| [(g[1].receiver - g[0].receiver) as u32, (g[1].column - g[0].column) as u32]);
-        let (full, steps, units): (&[f64], &[u16], &[f64]) = match &self.values {
-            Values::Full(values) => (values, &[], &[]),
-            Values::Steps { steps, unit } => (&[], steps, unit),
+        let (full, single): (&[f64], &[f32]) = match &self.values {
+            Values::Full(values) => (values, &[]),
+            Values::Single(values) => (&[], values),
         };
-        Arrays { sizes: sizes.collect(), columns: &self.columns, full, steps, units }
+        Arrays { sizes: sizes.collect(), columns: &self.columns, full, single }
     }
 
     pub(crate) fn from_arrays(
@@ -301,7 +285,7 @@ impl Rows {
         precision: Precision,
         sizes: &[u32],
         columns: Vec<u32>,
-        numbers: (Vec<f64>, Vec<u16>, Vec<f64>),
+        (full, single): (Vec<f64>, Vec<f32>),
     ) -> Result<Self, String> {
         let (pairs, rest) = sizes.as_chunks::<2>();
         let mut groups = vec![Extent { receiver: 0, column: 0, value: 0 }];
@@ -314,14 +298,13 @@ impl Rows {
             });
         }
         let end = groups[groups.len() - 1];
-        let (full, steps, unit) = numbers;
         let values = match precision {
             Precision::Full => Values::Full(full),
-            Precision::Steps => Values::Steps { steps, unit },
+            Precision::Single => Values::Single(single),
         };
         let fits = match &values {
             Values::Full(values) => values.len() == end.value,
-            Values::Steps { steps, unit } => steps.len() == end.value && unit.len() == end.receiver,
+            Values::Single(values) => values.len() == end.value,
         };
         if !rest.is_empty() || !fits || columns.len() != end.column {
             return Err("rows whose groups do not fit their arrays".into());
@@ -338,25 +321,4 @@ fn spread<const N: usize>(row: impl Iterator<Item = f64>, weight: &[f64; N], sum
     for (value, sums) in row.zip(sums) {
         sums.iter_mut().zip(weight).for_each(|(sum, weight)| *sum += value * weight);
     }
-}
-
-/// A step of an earlier row does if it is at most this much coarser than needed.
-const COARSER: f64 = 4.0;
-
-/// Append the row in steps of its largest entry; returns the size of a step. The error of each entry goes into the
-/// next (first-order noise shaping), so that partial sums are never off by more than half a step. Numbers that were kept
-/// in steps before stay what they are if that step still does.
-fn quantise(row: &[f64], before: Option<f64>, steps: &mut Vec<u16>) -> f64 {
-    let suits = row.iter().copied().fold(0.0, f64::max) / f64::from(u16::MAX);
-    let unit = before.filter(|&before| before >= suits && before <= COARSER * suits).unwrap_or(suits);
-    let mut carried = 0.0;
-    for &value in row {
-        let wanted = if unit > 0.0 { value / unit + carried } else { 0.0 };
-        let step = if value > 0.0 { wanted.round().clamp(0.0, f64::from(u16::MAX)) } else { 0.0 };
-        if value > 0.0 {
-            carried = wanted - step;
-        }
-        steps.push(step as u16);
-    }
-    unit
 }

@@ -5,7 +5,7 @@ use crate::part::{Material, Part};
 use glam::{DAffine3, DVec3};
 use std::path::PathBuf;
 
-/// Parts and their instances, as the importer found them.
+/// Parts and their instances, as the importer found them. Scene coordinates are the file's, moved by `origin`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// The file's stem.
@@ -22,6 +22,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Lights that are not surfaces.
     pub lights: Vec<PunctualLight>,
+    /// Where the origin of scene coordinates lies in the file's coordinates, metres: zero, unless the scene is far from there.
+    pub origin: DVec3,
     /// Number of closed shells of two-sided surfaces whose inner sides were hidden, as nothing shines inside.
     pub hidden_shells: usize,
     /// What was ignored, dropped or repaired on the way in, one sentence each.

@@ -37,15 +37,16 @@ fn array_of<T: Number>(reader: &mut Reader, name: &str, count: usize) -> Result<
 }
 
 /// An array of finite numbers.
-fn finite_array(reader: &mut Reader, name: &str) -> Result<Vec<f64>> {
-    let values = reader.array::<f64>(name)?;
-    check(reader, values.iter().all(|value| value.is_finite()), || format!("{name} that are not finite"))?;
+fn finite_array<T: Number + Into<f64>>(reader: &mut Reader, name: &str) -> Result<Vec<T>> {
+    let values = reader.array::<T>(name)?;
+    let is_finite = |&value: &T| Into::<f64>::into(value).is_finite();
+    check(reader, values.iter().all(is_finite), || format!("{name} that are not finite"))?;
     Ok(values)
 }
 
 /// Rows of `N` finite numbers.
 fn finite_rows<const N: usize>(reader: &mut Reader, name: &str) -> Result<Vec<[f64; N]>> {
-    let values = finite_array(reader, name)?;
+    let values: Vec<f64> = finite_array(reader, name)?;
     let (rows, rest) = values.as_chunks::<N>();
     check(reader, rest.is_empty(), || format!("{} {name}, not a multiple of {N}", values.len()))?;
     Ok(rows.to_vec())

@@ -50,10 +50,9 @@ fn light() -> BakedLight {
 }
 
 fn coupling() -> Rows {
-    let together =
-        RowGroup { columns: vec![0, 4], values: vec![0.125, 1e-9, 0.0, 0.25], receivers: 2, steps: None };
-    let alone = RowGroup { columns: vec![2], values: vec![1.0], receivers: 1, steps: None };
-    Rows::from_groups(5, [together, alone], Precision::Steps)
+    let together = RowGroup { columns: vec![0, 4], values: vec![0.125, 1e-9, 0.0, 0.25], receivers: 2 };
+    let alone = RowGroup { columns: vec![2], values: vec![1.0], receivers: 1 };
+    Rows::from_groups(5, [together, alone], Precision::Single)
 }
 
 fn folder() -> TempDir {
@@ -112,7 +111,7 @@ fn foreign_files_are_named_as_such() {
     let mut newer = bytes.clone();
     newer[8..12].copy_from_slice(&(FORMAT_VERSION + 6).to_le_bytes());
     let message = read_bytes::<Rows>(&folder, &newer).unwrap_err().to_string();
-    for part in ["changed.eqx", "format version 9", "expected version 3", "bake it again"] {
+    for part in ["changed.eqx", "format version 9", "expected version 4", "bake it again"] {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 

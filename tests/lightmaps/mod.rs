@@ -30,6 +30,7 @@ fn scene(part: Part, placements: &[DAffine3]) -> Scene {
         instances: placements.iter().map(instance).collect(),
         cameras: vec![],
         lights: vec![],
+        origin: DVec3::ZERO,
         hidden_shells: 0,
         notes: vec![],
     }

@@ -26,6 +26,7 @@ use equilux_bake::oven::{Baked, geometry_manifest};
 use equilux_bake::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Answers, BakedPart, Error, LocalEquilibrium, Optics, Result, Rgb, Rows, Store};
+use glam::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -118,7 +119,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     let stopped =
         || Error::new(&job.scene, "stopped before the light was known", "a complete run", "run it again");
     let scene = import_scene(&job.scene)?;
-    let places = job.points.as_deref().map(points::read).transpose()?;
+    let places = job.points.as_deref().map(|file| points::read(file, scene.origin)).transpose()?;
     let preparation = Preparation {
         element_size: job.element_size,
         division: Division::Authored,
@@ -148,7 +149,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         Some(places) => {
             let lights =
                 points::light(&gather, &placed.world.elements, places, monitor).ok_or_else(stopped)?;
-            vec![write_points(&job.out.join(&scene.name), places, &lights, &solved.irradiance)?]
+            vec![write_points(&job.out.join(&scene.name), places, scene.origin, &lights, &solved.irradiance)?]
         }
         None => vec![],
     };
@@ -225,11 +226,12 @@ fn without_light(part: PreparedPart) -> Baked {
 fn write_points(
     folder: &Path,
     places: &[Place],
+    origin: DVec3,
     lights: &[Option<PointLight>],
     irradiance: &[Rgb],
 ) -> Result<String> {
     std::fs::create_dir_all(folder).map_err(|error| unusable(folder, &error))?;
     let path = folder.join(POINTS);
-    points::write(&path, places, lights, irradiance)?;
+    points::write(&path, places, origin, lights, irradiance)?;
     Ok(path.display().to_string())
 }

@@ -8,6 +8,7 @@
 use super::Lightmap;
 use super::images::Peaks;
 use super::listing::rectangles;
+use crate::gltf_export::under_origin;
 use equilux_formats::{MaterialId, Rgb};
 use glam::{DVec3, UVec2, Vec2, Vec3};
 use gltf::binary::{Glb, Header};
@@ -46,7 +47,11 @@ pub fn model(lightmap: &Lightmap, images: &[Vec<u8>], look: &Look) -> io::Result
     let bin = document.add_images(images);
     let glb = Glb {
         header: Header { magic: *b"glTF", version: 2, length: 0 },
-        json: document.json(bin.len(), images.len(), look).to_string().into_bytes().into(),
+        json: document
+            .json(lightmap.scene.origin, bin.len(), images.len(), look)
+            .to_string()
+            .into_bytes()
+            .into(),
         bin: Some(bin.into()),
     };
     let mut file = Vec::new();
@@ -151,7 +156,7 @@ impl Document {
         buffer
     }
 
-    fn json(self, bytes: usize, images: usize, look: &Look) -> Value {
+    fn json(mut self, origin: DVec3, bytes: usize, images: usize, look: &Look) -> Value {
         let own = match look {
             Look::Emissive(_) => "KHR_materials_emissive_strength",
             Look::Unlit => "KHR_materials_unlit",
@@ -160,7 +165,7 @@ impl Document {
             "asset": { "version": "2.0", "generator": "Equilux" },
             "extensionsUsed": ["KHR_texture_transform", own],
             "scene": 0,
-            "scenes": [{ "nodes": (0..self.nodes.len()).collect::<Vec<_>>() }],
+            "scenes": [{ "nodes": under_origin(&mut self.nodes, origin) }],
             "nodes": self.nodes,
             "meshes": self.meshes,
             "materials": self.materials,

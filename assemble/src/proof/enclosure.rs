@@ -9,48 +9,30 @@
 use crate::exchange::Node;
 use equilux_bake::equilibrium::{added, apply, largest, scaled};
 use equilux_bake::treecode::MISSED;
-use equilux_formats::{ClusterTree, Precision, Rgb, Rows};
+use equilux_formats::{ClusterTree, Precision, Rgb, SINGLE_ROUNDING};
 use rayon::prelude::*;
 
 /// Sweeps end when they lower the bound by less than this share, and after so many.
 const SWEEPS: (f64, usize) = (1e-2, 200);
 
-/// Whether entries may stand for clusters, in steps.
+/// Whether entries may stand for clusters, rounded to f32.
 pub fn is_compressed(nodes: &[Node]) -> bool {
-    nodes.iter().any(|node| node.self_block.precision() == Precision::Steps)
+    nodes.iter().any(|node| node.self_block.precision() == Precision::Single)
 }
 
 /// The form factors of a scene as they are kept.
 pub struct Kept<'a> {
     nodes: &'a [Node<'a>],
-    /// Of each row, one vector an instance.
-    rounding: Vec<Vec<Rounding>>,
 }
 
-/// How an entry of a row may be off because it is kept in steps: by a step at most.
-#[derive(Clone, Copy)]
-struct Rounding {
-    /// Steps of the row in the instance's own block, and in its coupling.
-    steps: [f64; 2],
-    /// At most this many steps in all entries of the row together.
-    total: f64,
-}
+/// What a row's entries may be off by because they are kept as f32, and what it may miss, all entries together. The entries
+/// of a row sum to 1 at most.
+pub const OFF: f64 = SINGLE_ROUNDING + MISSED;
 
 impl<'a> Kept<'a> {
     /// The form factors that an exchange used.
     pub fn of(nodes: &'a [Node<'a>]) -> Self {
-        let rows = |node: &Node| {
-            let rounding = |i| Rounding::of([node.self_block, node.coupling], i);
-            (0..node.self_block.receivers()).map(rounding).collect()
-        };
-        Self { nodes, rounding: nodes.par_iter().map(rows).collect() }
-    }
-
-    /// What a row's sum is short of what the receiver sees, at most: what rounding takes from one entry it gives to the
-    /// next, so all entries of a block together are off by a step.
-    pub fn lack(&self, instance: usize, receiver: usize) -> f64 {
-        let [own, coupling] = self.rounding[instance][receiver].steps;
-        own + coupling + MISSED
+        Self { nodes }
     }
 
     /// How far the light that clusters reflect, each as one radiosity, can be from what their elements reflect, W/m²: a
@@ -104,35 +86,16 @@ impl<'a> Kept<'a> {
     /// the elements have the radiosities `rounded`; W/m².
     fn reflected(&self, values: &[Vec<Rgb>], rounded: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
         let (all, elements) = (values.concat(), rounded.concat());
-        let (most, sum) = (largest(&elements), sum_of_sizes(&elements));
+        let most = largest(&elements);
         let of = |(k, node): (usize, &Node)| -> Vec<Rgb> {
             let (own, others) = (apply(node.self_block, &values[k]), apply(node.coupling, &all));
-            let sums = [sum_of_sizes(&rounded[k]), sum];
             let row = |i: usize| {
-                let off = self.rounding[k][i].of_radiosities(most, sums);
+                let off = most.map(|most| OFF * most);
                 scaled(node.optics.reflectance[i], added(added(own[i], others[i]), off))
             };
             (0..own.len()).map(row).collect()
         };
         self.nodes.par_iter().enumerate().map(of).collect()
-    }
-}
-
-impl Rounding {
-    fn of(blocks: [&Rows; 2], receiver: usize) -> Self {
-        let steps = blocks.map(|block| block.step_of(receiver));
-        // Between two entries that are kept lie entries too small for a step, which together are less than one.
-        let entries = blocks.map(|block| (2 * block.entries_of(receiver) + 1) as f64);
-        Self { steps, total: steps[0] * entries[0] + steps[1] * entries[1] }
-    }
-
-    /// What the row may gain or lose, W/m², where no sender is brighter than `most` and the senders of the two blocks
-    /// together have radiosities of these sums. No two entries of a row stand for the same element.
-    fn of_radiosities(self, most: Rgb, [own, all]: [Rgb; 2]) -> Rgb {
-        std::array::from_fn(|c| {
-            let off = (self.total * most[c]).min(self.steps[0] * own[c] + self.steps[1] * all[c]);
-            off + MISSED * most[c]
-        })
     }
 }
 
@@ -158,10 +121,6 @@ fn maxima(clusters: &ClusterTree, elements: &[Rgb]) -> Vec<Rgb> {
         values[elements.len() + cluster] = std::array::from_fn(|c| left[c].max(right[c]));
     }
     values
-}
-
-fn sum_of_sizes(values: &[Rgb]) -> Rgb {
-    values.iter().fold([0.0; 3], |sum, v| added(sum, v.map(f64::abs)))
 }
 
 fn smaller(a: Rgb, b: Rgb) -> Rgb {

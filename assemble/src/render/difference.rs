@@ -31,8 +31,8 @@ pub struct Reference {
 impl Reference {
     /// Read a table with the columns that [`crate::points::read`] asks for, and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or `H_r`, `H_g`,
     /// `H_b`, W/m². Fails if it cannot be read or has no such columns.
-    pub fn read(file: &Path) -> Result<Self> {
-        let (places, irradiance) = read_light(file)?;
+    pub fn read(file: &Path, origin: DVec3) -> Result<Self> {
+        let (places, irradiance) = read_light(file, origin)?;
         Ok(Self { places, irradiance })
     }
 }

@@ -14,7 +14,7 @@ use crate::picture::{BACKGROUND, shade, write_png};
 use difference::Difference;
 pub use difference::Reference;
 use equilux_bake::visibility::rays::RayIndex;
-use equilux_formats::{Camera, Error, Result};
+use equilux_formats::{Camera, Error, Result, Scene};
 use glam::DVec3;
 use interpolation::Interpolated;
 use smooth::corner_irradiance;
@@ -89,15 +89,14 @@ pub struct Drawn {
 pub fn draw(
     shot: &Shot,
     against: Option<&Reference>,
-    cameras: &[Camera],
+    scene: &Scene,
     light: (&Equation, &Outcome),
     folder: &Path,
-    file: &Path,
 ) -> Result<Drawn> {
     let (equation, outcome) = light;
     let elements = &equation.placed.world.elements;
     let index = RayIndex::new(elements);
-    let view = view(shot, cameras, file, || View::framing(elements, &index))?;
+    let view = view(shot, scene, || View::framing(elements, &index))?;
     let canvas = Canvas::trace(view, &index);
     let emission = &equation.optics.emission;
     let Exposure(suits) = Exposure::choose(|| canvas.elements(), &outcome.radiosity, emission);
@@ -136,11 +135,14 @@ pub fn draw(
 }
 
 /// Fail where there is no such camera.
-fn view(shot: &Shot, cameras: &[Camera], file: &Path, framing: impl FnOnce() -> View) -> Result<View> {
+fn view(shot: &Shot, scene: &Scene, framing: impl FnOnce() -> View) -> Result<View> {
+    let Scene { cameras, file, origin, .. } = scene;
     let view = match &shot.eye {
         Eye::Scene => cameras.first().map_or_else(framing, View::of_camera),
         Eye::Camera(name) => View::of_camera(camera(name, cameras, file)?),
-        Eye::Points { from, to, field_of_view } => View::between(*from, *to, *field_of_view),
+        Eye::Points { from, to, field_of_view } => {
+            View::between(*from - *origin, *to - *origin, *field_of_view)
+        }
     };
     Ok(match shot.size {
         Some([width, height]) => View { width, height, ..view },

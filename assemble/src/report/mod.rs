@@ -1,5 +1,6 @@
 //! What a run says about itself: one JSON object for machines, tables for people.
 
+mod checks;
 pub mod inside;
 mod notes;
 pub mod summary;

@@ -1,12 +1,10 @@
 //! Sentences on what a person should know of the parts in their places: what stands in what, and what lies on what.
 
 use crate::coupling::Coupled;
-use crate::exchange::Node;
+use crate::exchange::{Node, Outcome};
 use crate::placed::Placed;
+use crate::report::checks::checks;
 use crate::report::inside;
-
-/// A row that sums to more than this counts light twice. Rows end within 1e-5 of 1, and steps round less.
-const TOO_MUCH: f64 = 1.0 + 1e-4;
 
 /// More sentences of one kind than this are made one.
 const FEW: usize = 4;
@@ -15,28 +13,16 @@ const FEW: usize = 4;
 const SAME_PLACE: f64 = 1e-6;
 
 /// All sentences.
-pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node]) -> Vec<String> {
+pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node], outcome: &Outcome) -> Vec<String> {
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let twice = coinciding(placed).into_iter().map(|[a, b]| {
         format!("{} and {} coincide: the same part in the same place; remove one of them", name(a), name(b))
     });
-    let overlapping = nodes.iter().enumerate().filter_map(|(k, node)| {
-        let sums = (0..node.areas.len()).map(|i| node.self_block.row_sum(i) + node.coupling.row_sum(i));
-        let most = sums.fold(0.0, f64::max);
-        (most > TOO_MUCH).then(|| {
-            format!(
-                "{} sees {:.1} % of what there can be: faces overlap in one plane, and the light of both is counted; \
-                 move one of them off the other",
-                name(k),
-                100.0 * most
-            )
-        })
-    });
     standing_inside(placed, coupled)
         .into_iter()
         .chain(twice)
-        .chain(overlapping)
         .chain(inside::notes(placed))
+        .chain(checks(placed, nodes, outcome))
         .collect()
 }
 

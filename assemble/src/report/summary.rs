@@ -71,7 +71,7 @@ pub fn summary(run: &Run) -> Report {
         verify: run.classic.map(|classic| verification(placed, classic, outcome)),
         explained: vec![],
         advice: None,
-        notes: notes(placed, coupled, nodes),
+        notes: notes(placed, coupled, nodes, outcome),
         outputs: vec![],
     }
 }

@@ -55,7 +55,9 @@ pub fn own_points(scene: &Scene, folder: &Path) -> Result<PathBuf> {
     let geometries: Vec<_> = scene.parts.iter().map(|part| subdivide(part, ElementSize::Mesh)).collect();
     let world = World::new(scene.instances.iter().map(|i| (&geometries[i.part.index()], i.placement)));
     let path = folder.join("points.csv");
-    let text = points_csv(&surface_points(&world.elements, POINTS));
+    let mut points = surface_points(&world.elements, POINTS);
+    points.iter_mut().for_each(|place| place.point += scene.origin);
+    let text = points_csv(&points);
     output_file::write(&path, |out| out.write_all(text.as_bytes()))?;
     Ok(path)
 }

@@ -28,7 +28,7 @@ impl Reference {
     /// From a file in the form of `scenes/*/truth.csv`: irradiance at the centroids of elements, with their areas.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Table::read(path, EXPECTED)?;
-        places(&table)?;
+        places(&table, DVec3::ZERO)?;
         let areas = table.numbers("area")?;
         if let Some(row) = areas.iter().position(|&area| area <= 0.0) {
             return Err(table.wrong_line(row, &format!("has an area of {}", areas[row])));

@@ -43,8 +43,8 @@ pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>)
 pub fn endless_in_block(optics: &Optics, block: &Rows, clusters: &ClusterTree) -> Option<usize> {
     endless_light(optics, |i| {
         // What a row may lack counts as staying: clusters must not open a closed part.
-        let step = block.step_of(i);
-        let mut row = if step > 0.0 { vec![(i, step + MISSED)] } else { vec![] };
+        let rounding = block.rounding();
+        let mut row = if rounding > 0.0 { vec![(i, rounding + MISSED)] } else { vec![] };
         for (node, value) in block.row(i) {
             clusters.spread(node, &mut |element, share| row.push((element, value * share)));
         }

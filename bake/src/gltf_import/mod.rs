@@ -113,6 +113,7 @@ impl<'a> Stage<'a> {
             instances: Vec::new(),
             cameras: Vec::new(),
             lights: Vec::new(),
+            origin: DVec3::ZERO,
             hidden_shells: 0,
             notes: Vec::new(),
         };

@@ -1,13 +1,16 @@
 //! A scene as its file has it → the surfaces of it that light can fall on.
 
+mod bounds;
 mod cells;
 mod hidden_backs;
 mod overlaps;
+mod recentre;
 
 use equilux_formats::{PartId, Scene};
 
-/// Takes out of a scene what takes no part in its light.
+/// Moves a scene close to the origin of its coordinates, and takes out of it what takes no part in its light.
 pub(crate) fn tidy(scene: &mut Scene) {
+    recentre::recentre(scene);
     scene.hidden_shells = hidden_backs::hide_backs(scene);
     overlaps::cut_overlaps(scene);
     scene.instances.retain(|instance| !scene.parts[instance.part.index()].surfaces.is_empty());

@@ -4,48 +4,41 @@
 //! What is cut within a part is cut for all of its instances. What another instance covers makes another part of an
 //! instance, the same one for all that are covered alike.
 
+use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
 use crate::keys::rounded;
 use crate::planes;
 use crate::visibility::BoxTree;
 use equilux_formats::{Instance, Part, PartId, Scene, Surface};
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// More pairs of parts than this are counted instead of named.
+/// More parts and pairs of parts than this are counted instead of named.
 const NAMED: usize = 3;
 
 /// Cuts away what is covered, and says so.
 pub(super) fn cut_overlaps(scene: &mut Scene) {
-    let mut notes = Vec::new();
+    let mut covered = Vec::new();
     for part in &mut scene.parts {
         let count = cut_within(part);
         if count > 0 {
-            notes.push(format!("{} of `{}` {} on others of it", faces(count), part.name, lie(count)));
+            covered.push(format!("{count} of `{}` on others of it", part.name));
         }
     }
-    notes.extend(cut_across(scene));
-    let more = notes.len().saturating_sub(NAMED);
-    notes.truncate(NAMED);
-    let sentence = |what: String| {
-        format!(
-            "{what} in one plane: what lies there first was kept, and of the others what it covers was cut away; move them apart"
-        )
-    };
-    scene.notes.extend(notes.into_iter().map(sentence));
-    if more > 0 {
-        scene.notes.push(format!(
-            "faces of {more} more parts or pairs of parts lie on each other in one plane and were cut"
-        ));
+    covered.extend(cut_across(scene));
+    if covered.is_empty() {
+        return;
     }
-}
-
-fn faces(count: usize) -> String {
-    if count == 1 { "1 face".to_owned() } else { format!("{count} faces") }
-}
-
-fn lie(count: usize) -> &'static str {
-    if count == 1 { "lies" } else { "lie" }
+    let more = match covered.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(", and {more} more such pairs"),
+    };
+    covered.truncate(NAMED);
+    scene.notes.push(format!(
+        "faces lie on others in one plane and look the same way: {}{more}; each place counts once, for the first face there, and \
+         what that covers of the others was cut away",
+        covered.join(", ")
+    ));
 }
 
 /// Sides of surfaces that can be searched by place.
@@ -112,7 +105,7 @@ fn cut_across(scene: &mut Scene) -> Vec<String> {
         scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
     let tolerance = planes::tolerance(bounds.iter().flat_map(|(low, high)| [low, high]));
     let tree = BoxTree::new(&bounds);
-    let (mut variants, mut notes) = (Variants::default(), Vec::new());
+    let (mut variants, mut covered) = (Variants::default(), Vec::new());
     for number in 0..scene.instances.len() {
         let (low, high) = bounds[number];
         let mut near: Vec<usize> =
@@ -124,7 +117,7 @@ fn cut_across(scene: &mut Scene) -> Vec<String> {
             let found = covered_by(scene, number, other, tolerance);
             if !found.is_empty() {
                 let [own, other] = [number, other].map(|k| &scene.instances[k].name);
-                notes.push(format!("{} of `{own}` {} on `{other}`", faces(found.len()), lie(found.len())));
+                covered.push(format!("{} of `{own}` on `{other}`", found.len()));
             }
             found.into_iter().for_each(|(surface, cover)| covers.entry(surface).or_default().extend(cover));
         }
@@ -135,7 +128,7 @@ fn cut_across(scene: &mut Scene) -> Vec<String> {
             scene.instances[number].part = variants.part(&mut scene.parts, part, surfaces);
         }
     }
-    notes
+    covered
 }
 
 fn meet(a: (DVec3, DVec3), b: (DVec3, DVec3), tolerance: f64) -> bool {
@@ -172,20 +165,6 @@ fn covered_by(scene: &Scene, own: usize, other: usize, tolerance: f64) -> BTreeM
 
 fn scale(instance: &Instance) -> f64 {
     instance.placement.matrix3.determinant().abs().cbrt()
-}
-
-fn part_bounds(part: &Part) -> (DVec3, DVec3) {
-    let corners = || part.surfaces.iter().flat_map(|surface| surface.corners.as_slice()).copied();
-    (corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max))
-}
-
-fn placed_bounds(parts: &[Part], instance: &Instance) -> (DVec3, DVec3) {
-    let (low, high) = part_bounds(&parts[instance.part.index()]);
-    let DAffine3 { matrix3, .. } = instance.placement;
-    let centre = instance.placement.transform_point3((low + high) / 2.0);
-    let half = (high - low) / 2.0;
-    let reach = matrix3.x_axis.abs() * half.x + matrix3.y_axis.abs() * half.y + matrix3.z_axis.abs() * half.z;
-    (centre - reach, centre + reach)
 }
 
 /// Parts that were made of others by cutting.

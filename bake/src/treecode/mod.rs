@@ -47,7 +47,7 @@ impl Resolution {
         if tolerance == 0.0 {
             EXACT
         } else {
-            Self { opening: OPENING * tolerance, precision: Precision::Steps }
+            Self { opening: OPENING * tolerance, precision: Precision::Single }
         }
     }
 }

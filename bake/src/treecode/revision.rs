@@ -91,9 +91,7 @@ impl Revision<'_> {
             return None;
         }
         let columns = senders.iter().map(|node| node - request.columns.start as u32).collect();
-        let receivers = self.old.receivers_of(group);
-        let steps = Some(receivers.clone().map(|i| self.old.step_of(i)).collect());
-        Some(RowGroup { columns, values, receivers: receivers.len(), steps })
+        Some(RowGroup { columns, values, receivers: self.old.receivers_of(group).len() })
     }
 }
 
@@ -186,10 +184,5 @@ impl<'a> Revised<'a> {
             self.kept.iter().map(|(&sender, &place)| (sender, self.column(place).collect())).collect();
         entries.sort_unstable_by_key(|entry| entry.0);
         entries
-    }
-
-    /// The steps in which the old numbers were kept, one a receiver: with the same steps they stay the same.
-    pub fn steps(&self) -> Vec<f64> {
-        self.revision.old.receivers_of(self.group).map(|i| self.revision.old.step_of(i)).collect()
     }
 }

@@ -258,10 +258,9 @@ impl<'a> Search<'a> {
     fn finish(mut self) -> Found {
         let receivers = self.receivers.count();
         let computed = self.values.len();
-        let (mut is_changed, mut steps) = (true, None);
+        let mut is_changed = true;
         if let Some(revised) = &self.revised {
             is_changed = computed > 0 || !revised.is_unchanged();
-            steps = Some(revised.steps());
             for (node, values) in revised.entries() {
                 self.columns.push(node - self.request.columns.start as u32);
                 self.values.extend(values);
@@ -275,7 +274,7 @@ impl<'a> Search<'a> {
             (0..receivers).flat_map(row).map(|(k, i)| self.values[k * receivers + i]).collect();
         let width = order.len();
         let sums = (0..receivers).map(|i| values[i * width..(i + 1) * width].iter().sum()).collect();
-        Found { group: RowGroup { columns, values, receivers, steps }, sums, computed, is_changed }
+        Found { group: RowGroup { columns, values, receivers }, sums, computed, is_changed }
     }
 }
 

@@ -69,6 +69,16 @@ impl<'a> RayIndex<'a> {
         nearest
     }
 
+    /// All hits beyond distance 0 along `direction` from `origin`, in no order.
+    pub fn all_hits(&self, origin: DVec3, direction: DVec3) -> Vec<Hit> {
+        let hits = std::cell::RefCell::new(Vec::new());
+        self.nearest(origin, direction, |hit| {
+            hits.borrow_mut().push(*hit);
+            false
+        });
+        hits.into_inner()
+    }
+
     /// Whether nothing stands between two points, the ends themselves (within 1e-9 of the distance) left out.
     pub fn sees(&self, from: DVec3, to: DVec3) -> bool {
         let direction = to - from;

@@ -48,8 +48,7 @@ pub(super) fn write_rows(rows: &Rows, writer: &mut Writer) {
     writer.array("group sizes", &arrays.sizes);
     writer.array("column differences", &differences);
     writer.array("form factors", arrays.full);
-    writer.array("steps", arrays.steps);
-    writer.array("step units", arrays.units);
+    writer.array("single form factors", arrays.single);
 }
 
 /// The block that [`write_rows`] wrote.
@@ -62,8 +61,7 @@ pub(super) fn read_rows(reader: &mut Reader, meta: Meta) -> Result<Rows> {
         *column = last;
     }
     let full = finite_array(reader, "form factors")?;
-    let steps = reader.array("steps")?;
-    let units = finite_array(reader, "step units")?;
-    Rows::from_arrays(meta.senders, meta.precision, &sizes, columns, (full, steps, units))
+    let single = finite_array(reader, "single form factors")?;
+    Rows::from_arrays(meta.senders, meta.precision, &sizes, columns, (full, single))
         .map_err(|problem| reader.damaged(problem))
 }

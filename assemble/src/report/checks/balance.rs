@@ -1,0 +1,70 @@
+//! Energy that does not add up: a closed scene absorbs what it emits, but for what collocation costs.
+//!
+//! Of what element j sends, Σ_i A_i F_ij / A_j arrives. F_ij is taken at the receivers' centroids, so where a sender is nearer
+//! to a receiver than the receiver is wide, the sum may be far from one: a lamp under a ceiling, for instance.
+
+use super::view::View;
+use crate::exchange::{Node, Outcome};
+use crate::placed::Placed;
+use std::collections::BTreeMap;
+
+/// So much of the energy may be missing or too much.
+const SHARE: f64 = 0.01;
+
+/// A sentence, if a closed scene absorbs noticeably more or less than it emits.
+pub(super) fn note(placed: &Placed, nodes: &[Node], outcome: &Outcome, view: &View) -> Option<String> {
+    let energy = &outcome.known.energy;
+    let channel = (0..3).max_by(|&a, &b| energy.emitted[a].total_cmp(&energy.emitted[b]))?;
+    let (emitted, absorbed) = (energy.emitted[channel], energy.absorbed[channel]);
+    if emitted <= 0.0 || (absorbed - emitted).abs() <= SHARE * emitted || !view.is_closed() {
+        return None;
+    }
+    let (sender, receiver) = culprits(placed, nodes, outcome, channel, absorbed > emitted)?;
+    let name = |k: usize| format!("`{}`", placed.instances[k].name);
+    let where_ = if sender == receiver {
+        format!("faces of {}", name(sender))
+    } else {
+        format!("{} and {}", name(sender), name(receiver))
+    };
+    Some(format!(
+        "the scene is closed, but absorbs {:.1} % of what it emits: {where_} are nearer to each other than their elements are \
+         wide; give them smaller elements (element_size in the node's extras, or --element-size)",
+        100.0 * absorbed / emitted
+    ))
+}
+
+/// The sender and the receiver between which most power is gained, or lost.
+fn culprits(
+    placed: &Placed,
+    nodes: &[Node],
+    outcome: &Outcome,
+    channel: usize,
+    gained: bool,
+) -> Option<(usize, usize)> {
+    let radiosity = placed.split(&outcome.radiosity);
+    let means: Vec<Vec<f64>> = nodes
+        .iter()
+        .zip(&radiosity)
+        .map(|(node, b)| node.clusters.means(b).into_iter().map(|b| b[channel]).collect())
+        .collect();
+    // Power that each instance gets from each other, and what each sends.
+    let mut arriving: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+    for (k, node) in nodes.iter().enumerate() {
+        for (block, first) in [(node.self_block, placed.world.nodes_of(k).start), (node.coupling, 0)] {
+            for group in 0..block.groups() {
+                let areas: Vec<[f64; 1]> = block.receivers_of(group).map(|i| [node.areas[i]]).collect();
+                for (column, [area]) in block.scatter_group(group, &areas) {
+                    let sender = placed.world.instance_of_node(first + column);
+                    let place = first + column - placed.world.nodes_of(sender).start;
+                    *arriving.entry((sender, k)).or_default() += area * means[sender][place];
+                }
+            }
+        }
+    }
+    let sent = |k: usize| nodes[k].areas.iter().zip(&radiosity[k]).map(|(a, b)| a * b[channel]).sum::<f64>();
+    let received = |k: usize| arriving.range((k, 0)..(k + 1, 0)).map(|(_, power)| power).sum::<f64>();
+    let off = |&k: &usize| (received(k) - sent(k)) * if gained { 1.0 } else { -1.0 };
+    let sender = (0..nodes.len()).max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let nearest = arriving.range((sender, 0)..(sender + 1, 0)).max_by(|a, b| a.1.total_cmp(b.1))?;
+    Some((sender, nearest.0.1))
+}

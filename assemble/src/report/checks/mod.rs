@@ -1,0 +1,18 @@
+//! What looks wrong in a scene or in its light: results of a run → sentences that say what to change.
+
+mod backs;
+mod balance;
+mod overfull;
+mod view;
+
+use crate::exchange::{Node, Outcome};
+use crate::placed::Placed;
+use view::View;
+
+/// Sentences about rows above one, energy that does not add up, and surfaces that show their black backs.
+pub fn checks(placed: &Placed, nodes: &[Node], outcome: &Outcome) -> Vec<String> {
+    let view = View::of(placed);
+    let overfull = overfull::notes(placed, nodes, &view);
+    let balance = balance::note(placed, nodes, outcome, &view);
+    overfull.into_iter().chain(balance).chain(backs::notes(placed, &view)).collect()
+}

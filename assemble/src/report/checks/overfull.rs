@@ -1,0 +1,85 @@
+//! Rows that sum to more than one: something is counted twice. Either faces of the scene lie in each other, or a form factor
+//! is wrong; a note says which.
+
+use super::view::View;
+use crate::account::row_sums;
+use crate::exchange::Node;
+use crate::placed::Placed;
+use equilux_bake::visibility::rays::Hit;
+
+/// No sum of a row is further above one than this: the rounding of its entries.
+const ROUNDING: f64 = 1e-6;
+
+/// Two senders lie at one place if a ray meets them within this share of the distance.
+const SAME_PLACE: f64 = 1e-5;
+
+/// So many instances are named.
+const NAMED: usize = 3;
+
+/// The worst row of each of the first few instances that have one above one.
+pub(super) fn notes(placed: &Placed, nodes: &[Node], view: &View) -> Vec<String> {
+    let worst = |node: &Node| row_sums(node).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    let rows = nodes.iter().enumerate().filter_map(|(k, node)| worst(node).map(|(row, sum)| (k, row, sum)));
+    let overfull: Vec<(usize, usize, f64)> = rows.filter(|&(_, _, sum)| sum > 1.0 + ROUNDING).collect();
+    let name = |k: usize| format!("`{}`", placed.instances[k].name);
+    let note = |&(k, row, sum): &(usize, usize, f64)| {
+        let receiver = placed.world.elements_of(k).start + row;
+        let sees =
+            format!("element {receiver} of {} sees {:.4} % of what there can be", name(k), 100.0 * sum);
+        match lying_together(placed, nodes, view, (k, row)) {
+            Some([a, b]) => format!(
+                "{sees}: faces of {} and {} lie at one place, and the light of both is counted; move one of them off the other",
+                name(a),
+                name(b)
+            ),
+            None => format!(
+                "{sees}, though no two faces lie at one place: its form factors are wrong; please report this file as a fault \
+                 of Equilux"
+            ),
+        }
+    };
+    let mut notes: Vec<String> = overfull.iter().take(NAMED).map(note).collect();
+    if overfull.len() > NAMED {
+        notes.push(format!("rows of {} more parts sum to more than 1", overfull.len() - NAMED));
+    }
+    notes
+}
+
+/// The instances of two senders of a row that lie at one place, if there are any.
+fn lying_together(
+    placed: &Placed,
+    nodes: &[Node],
+    view: &View,
+    (k, row): (usize, usize),
+) -> Option<[usize; 2]> {
+    let world = &placed.world;
+    let origin = world.elements[world.elements_of(k).start + row].centroid;
+    let own = nodes[k].self_block.row(row).map(|(column, _)| column + world.nodes_of(k).start);
+    let senders = own.chain(nodes[k].coupling.row(row).map(|(column, _)| column));
+    let instance_of = |element: usize| world.instance_of_node(world.node_of(element));
+    senders.flat_map(|node| elements_in(placed, node)).find_map(|sender| {
+        let direction = world.elements[sender].centroid - origin;
+        let is_there = |hit: &Hit| (hit.distance - 1.0).abs() <= SAME_PLACE;
+        let others = view.index.all_hits(origin, direction).into_iter().filter(is_there);
+        let mut others = others
+            .filter(|hit| hit.front && hit.element != sender && !share_an_edge(placed, hit.element, sender));
+        others.next().map(|other| [instance_of(sender), instance_of(other.element)])
+    })
+}
+
+/// Whether two elements are of one face: then they lie beside each other.
+fn share_an_edge(placed: &Placed, a: usize, b: usize) -> bool {
+    placed.world.elements[a].face == placed.world.elements[b].face
+}
+
+/// The elements of a node of the scene.
+fn elements_in(placed: &Placed, node: usize) -> Vec<usize> {
+    let (mut open, mut elements) = (vec![node as u32], Vec::new());
+    while let Some(node) = open.pop() {
+        match placed.world.nodes[node as usize].children {
+            Some(children) => open.extend(children),
+            None => elements.extend(placed.world.element_of(node as usize)),
+        }
+    }
+    elements
+}
