@@ -135,6 +135,11 @@ impl World {
         if instance[a] == instance[b] { in_part[a] == in_part[b] } else { in_scene[a] == in_scene[b] }
     }
 
+    /// The number of the plane that a face lies in, among those of its instance.
+    pub fn plane_of(&self, face: FaceId) -> u32 {
+        self.planes.in_part[face.index()]
+    }
+
     /// The elements of the `instance`-th geometry.
     pub fn elements_of(&self, instance: usize) -> Range<usize> {
         self.instances[instance].elements.clone()

@@ -31,7 +31,7 @@ fn the_error_is_what_was_asked_for_and_the_bound_covers_it() {
         // The opening was chosen by measuring.
         assert!(verify.rms_rel_diff <= tolerance, "{} for {tolerance}", verify.rms_rel_diff);
         covers(&report, &format!("corridor, {tolerance}"));
-        // Entries are exact; a row is searched until a millionth is missing, and kept in 16-bit steps.
+        // Entries are exact; a row is searched until a millionth is missing, and kept as f32.
         assert!(report.row_sum_defect.max <= 1e-5, "row sums off by {}", report.row_sum_defect.max);
         assert!(report.bytes.stored * 4 < report.bytes.dense, "{} bytes", report.bytes.stored);
     }
@@ -44,7 +44,12 @@ fn covers(report: &Report, what: &str) {
     assert!(off <= proved, "{what}: off by {off}, proved {proved} from {}", error.proved_from);
     let (proved, off) = (error.proved_rms, verify.rms_rel_diff);
     assert!(off <= proved, "{what}: RMS {off}, proved {proved} from {}", error.proved_from);
-    assert_eq!(report.rounds.last().expect("rounds").error_bound, error.proved, "{what}: the last round");
+    let exchange = report.rounds.last().expect("rounds").error_bound;
+    assert!(
+        exchange <= error.proved,
+        "{what}: the exchange alone may be off by {exchange}, all by {}",
+        error.proved
+    );
 }
 
 /// Checks a scene with all rows exact and with some, and returns what the first proved over what was off.

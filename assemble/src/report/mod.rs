@@ -147,11 +147,8 @@ pub struct RoundReport {
     pub round: usize,
     /// Largest residual, W/m².
     pub residual: f64,
-    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m²; in the last
-    /// round, from that of the exact matrix.
+    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m².
     pub error_bound: f64,
-    /// The share of the bound that comes from entries that stand for clusters, W/m²; known after the last round.
-    pub compression: f64,
     /// The bound over the brightest radiosity of the parts that exchange light with each other, the worst of all.
     pub relative_bound: f64,
     /// Largest difference from the classic solution, W/m², if that was asked for and there is a picture of the round.

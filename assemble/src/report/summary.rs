@@ -59,7 +59,7 @@ pub fn summary(run: &Run) -> Report {
         form_factors_stored: nodes.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
         form_factors_computed: form_factors_computed(placed, coupled),
         seconds: seconds(placed, coupled, &outcome.times),
-        rounds: rounds(run, &error),
+        rounds: rounds(run),
         coarse_unknowns: outcome.coarse_unknowns,
         groups: outcome.groups,
         converged: outcome.converged,
@@ -87,17 +87,8 @@ fn part_report(baked: &Baked) -> PartReport {
     }
 }
 
-fn rounds(run: &Run, error: &ErrorReport) -> Vec<RoundReport> {
-    let outcome = run.outcome;
-    let mut rounds: Vec<RoundReport> =
-        outcome.rounds.iter().map(|round| round_report(round, run.classic)).collect();
-    if let Some(last) = rounds.last_mut().filter(|_| error.spread.is_some()) {
-        let brightest = largest(&outcome.radiosity).into_iter().fold(0.0, f64::max);
-        last.compression = (error.proved - last.error_bound).max(0.0);
-        last.error_bound = error.proved;
-        last.relative_bound = if error.proved == 0.0 { 0.0 } else { error.proved / brightest };
-    }
-    rounds
+fn rounds(run: &Run) -> Vec<RoundReport> {
+    run.outcome.rounds.iter().map(|round| round_report(round, run.classic)).collect()
 }
 
 fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
@@ -106,7 +97,6 @@ fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
         round: round.number,
         residual: round.known.residual,
         error_bound: round.known.error_bound,
-        compression: 0.0,
         relative_bound: round.known.relative_bound,
         true_error: off,
         energy: round.known.energy,

@@ -145,6 +145,12 @@ impl Report {
                 "the exchange did not come as near as asked: stopped before, or rounding is reached".into(),
             );
         }
+        if let Some(last) = self.rounds.last() {
+            lines.push(format!(
+                "exchange: proved to be within {:.1e} W/m² of the solution with the form factors as they are kept",
+                last.error_bound
+            ));
+        }
         lines
     }
 }
@@ -153,13 +159,18 @@ impl ErrorReport {
     /// What is proved and what was measured of entries that stand for clusters.
     fn lines(&self, elements: usize) -> Vec<String> {
         let mut lines = Vec::new();
-        if self.spread.is_some() {
-            lines.push(format!(
-                "clusters: proved, no radiosity is off by more than {:.2e} W/m², {} of the mean in RMS (from {})",
+        match self.spread {
+            Some(_) if self.proved.is_finite() => lines.push(format!(
+                "clusters: at worst a radiosity is off by {:.2e} W/m², {} of the mean in RMS (a proved bound that adds up what \
+                 mostly cancels, from {})",
                 self.proved,
                 percent(self.proved_rms),
                 self.proved_from
-            ));
+            )),
+            Some(_) => lines.push(
+                "clusters: no bound on their error can be proved, as some surfaces reflect all light".to_owned(),
+            ),
+            None => {}
         }
         if let Some(rows) = &self.exact_rows {
             let whether = if rows.rows == elements { "all" } else { "a sample, which proves nothing" };
