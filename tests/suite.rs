@@ -13,3 +13,4 @@ mod stiff;
 mod sweep;
 mod textures;
 mod truth;
+mod untidy;
