@@ -18,6 +18,16 @@ pub enum ElementSize {
     Mesh,
 }
 
+impl ElementSize {
+    /// The same size in units of which each is so many metres.
+    pub fn in_units_of(self, metres: f64) -> Self {
+        match self {
+            Self::Metres(size) => Self::Metres(size / metres),
+            Self::Mesh => Self::Mesh,
+        }
+    }
+}
+
 impl std::fmt::Display for ElementSize {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -32,7 +42,8 @@ const DEFAULT_ELEMENTS: f64 = 3000.0;
 
 /// A size that suits surfaces of this total area (m²): a round number that gives a few thousand elements.
 pub fn default_size(area: f64) -> ElementSize {
-    let wanted = (area / DEFAULT_ELEMENTS).sqrt();
+    // Above what rounding takes from it, such as scales in f32 do: scenes that are the same get the same size.
+    let wanted = (area / DEFAULT_ELEMENTS).sqrt() * (1.0 + 1e-6);
     let decade = 10f64.powf(wanted.log10().floor());
     let step = [5.0, 2.5, 2.0, 1.5, 1.0].into_iter().find(|s| s * decade <= wanted).unwrap_or(1.0);
     // Written out and read again, so that the size printed is the size used.

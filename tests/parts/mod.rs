@@ -10,4 +10,5 @@ mod left_out;
 mod modular;
 mod overrides;
 mod reuse;
+mod scaled;
 mod split;
