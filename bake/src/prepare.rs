@@ -2,7 +2,7 @@
 
 use crate::bisect::{Cut, bisect, cut_all};
 use crate::clusters;
-use crate::elements::{ElementSize, area, default_size, optics, subdivide};
+use crate::elements::{ElementSize, Panels, area, default_size, optics};
 use crate::equilibrium::default_solver;
 use crate::textures::tints;
 use crate::treecode::Resolution;
@@ -67,7 +67,7 @@ pub struct PreparedPart {
 }
 
 /// The most elements a part may have: ids are 32 bits, and a matrix of this many rows no machine holds.
-const MOST_ELEMENTS: f64 = 4e6;
+const MOST_ELEMENTS: u128 = 4_000_000;
 
 /// Give every part its elements. Fails where the element size asks for more of them than can be.
 pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
@@ -76,8 +76,9 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     let mut parts = Vec::new();
     for (part, &scale) in scene.parts.iter().zip(&scales) {
         let size = part.element_size.map_or(element_size, ElementSize::Metres);
-        refuse_too_many(scene, area(part) * scale.powi(2), size)?;
-        let geometry = subdivide(part, size.in_units_of(scale));
+        let panels = Panels::of(part, size.in_units_of(scale));
+        refuse_too_many(scene, part, panels.elements(), size)?;
+        let geometry = panels.geometry();
         let tints = tints(&geometry, &part.materials, &part.textured);
         let solver = part.local_solver.or(wanted.local_solver);
         parts.push(PreparedPart {
@@ -115,18 +116,22 @@ fn suitable_size(scene: &Scene, scales: &[f64]) -> ElementSize {
     default_size(parts.map(|part| area(&scene.parts[part]) * scales[part].powi(2)).sum())
 }
 
-fn refuse_too_many(scene: &Scene, area: f64, size: ElementSize) -> Result<()> {
-    let ElementSize::Metres(size) = size else { return Ok(()) };
-    let count = area / (size * size);
-    if count <= MOST_ELEMENTS {
+fn refuse_too_many(scene: &Scene, part: &Part, elements: u128, size: ElementSize) -> Result<()> {
+    if elements <= MOST_ELEMENTS {
         return Ok(());
     }
-    Err(Error::new(
-        &scene.file,
-        format!("elements of {size} m on {area:.3e} m² of surface are {count:.1e}"),
-        format!("at most {MOST_ELEMENTS:.0e} elements a part"),
-        "choose larger elements with --element-size METRES",
-    ))
+    let found = match size {
+        ElementSize::Metres(size) => {
+            format!("part `{}` in elements of {size} m has {elements} of them", part.name)
+        }
+        ElementSize::Mesh => format!("part `{}` with {elements} faces", part.name),
+    };
+    let remedy = if part.surfaces.len() as u128 > MOST_ELEMENTS {
+        "simplify its mesh, or divide it into several root nodes"
+    } else {
+        "choose larger elements with --element-size METRES"
+    };
+    Err(Error::new(&scene.file, found, format!("at most {MOST_ELEMENTS} elements a part"), remedy))
 }
 
 /// The whole scene as one geometry, cut into cells; each cell is a part that stands once.
