@@ -131,7 +131,7 @@ fn refuse_too_many(scene: &Scene, part: &Part, elements: u128, size: ElementSize
     } else {
         "choose larger elements with --element-size METRES"
     };
-    Err(Error::new(&scene.file, found, format!("at most {MOST_ELEMENTS} elements a part"), remedy))
+    Err(Error::new(&scene.file, found, format!("at most {MOST_ELEMENTS:e} elements a part"), remedy))
 }
 
 /// The whole scene as one geometry, cut into cells; each cell is a part that stands once.

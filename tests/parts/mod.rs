@@ -3,6 +3,7 @@
 
 mod bytes;
 mod compressed;
+mod counted;
 mod edits;
 mod inside;
 mod instances;
