@@ -1,6 +1,7 @@
-//! Surfaces → elements: every surface is cut into near-square quads or triangles no larger than asked for.
+//! Surfaces → elements: every surface is cut into quads or triangles no larger than asked for.
 
 use crate::clusters;
+use crate::cuts;
 use crate::merge::{Merged, merge};
 use crate::planes::FLATNESS;
 use equilux_formats::{
@@ -19,6 +20,16 @@ pub enum ElementSize {
     Mesh,
 }
 
+impl ElementSize {
+    /// The same size in units of which each is so many metres.
+    pub fn in_units_of(self, metres: f64) -> Self {
+        match self {
+            Self::Metres(size) => Self::Metres(size / metres),
+            Self::Mesh => Self::Mesh,
+        }
+    }
+}
+
 impl std::fmt::Display for ElementSize {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -33,7 +44,8 @@ const DEFAULT_ELEMENTS: f64 = 3000.0;
 
 /// A size that suits surfaces of this total area (m²): a round number that gives a few thousand elements.
 pub fn default_size(area: f64) -> ElementSize {
-    let wanted = (area / DEFAULT_ELEMENTS).sqrt();
+    // Above what rounding takes from it, such as scales in f32 do: scenes that are the same get the same size.
+    let wanted = (area / DEFAULT_ELEMENTS).sqrt() * (1.0 + 1e-6);
     let decade = 10f64.powf(wanted.log10().floor());
     let step = [5.0, 2.5, 2.0, 1.5, 1.0].into_iter().find(|s| s * decade <= wanted).unwrap_or(1.0);
     // Written out and read again, so that the size printed is the size used.
@@ -48,27 +60,77 @@ pub fn area(part: &Part) -> f64 {
 
 /// The part's elements and faces, in the order of the elements' hierarchy.
 pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
-    let panels = panels(part, size);
-    let polygons: Vec<Face> = panels.iter().map(|panel| polygon(&panel.corners)).collect();
-    let Merged { faces, of } = merge(&polygons, |_| (), |_| true);
+    Panels::of(part, size).geometry()
+}
 
-    let mut order: Vec<(u32, bool, usize)> = Vec::new();
-    for (index, panel) in panels.iter().enumerate() {
-        order.push((of[index], false, index));
-        if panel.two_sided {
-            order.push((of[index], true, index));
+/// A part's surfaces as they are cut up, before they are.
+pub struct Panels {
+    size: ElementSize,
+    panels: Vec<Panel>,
+}
+
+/// A triangle or parallelogram of one material that is cut up as a whole.
+#[derive(Clone, Copy)]
+struct Panel {
+    corners: Corners,
+    material: MaterialId,
+    two_sided: bool,
+}
+
+impl Panels {
+    /// The panels of `part`, to be cut to elements of `size` in the part's own unit. They are the surfaces themselves, or, where
+    /// elements have their own size, parallelograms joined to larger ones, so that elements follow the wall and not its
+    /// tessellation.
+    pub fn of(part: &Part, size: ElementSize) -> Self {
+        let panel =
+            |s: &Surface| Panel { corners: s.corners, material: s.material, two_sided: part.is_two_sided(s) };
+        let own = part.surfaces.iter().map(panel);
+        let panels = match size {
+            ElementSize::Mesh => own.collect(),
+            ElementSize::Metres(_) => joined(own),
+        };
+        Self { size, panels }
+    }
+
+    /// How many elements they make.
+    pub fn elements(&self) -> u128 {
+        let pieces = |panel: &Panel| match self.size {
+            ElementSize::Metres(size) => cuts::count(&panel.corners, size),
+            ElementSize::Mesh => 1,
+        };
+        let of_panel = |panel| pieces(panel).saturating_mul(panel.sides() as u128);
+        self.panels.iter().map(of_panel).fold(0, u128::saturating_add)
+    }
+
+    /// The elements and faces, in the order of the elements' hierarchy.
+    pub fn geometry(&self) -> Geometry {
+        let polygons: Vec<Face> = self.panels.iter().map(|panel| polygon(&panel.corners)).collect();
+        let Merged { faces, of } = merge(&polygons, |_| (), |_| true);
+        let sides = |index: usize| (0..self.panels[index].sides()).map(move |side| (side, index));
+        let mut order: Vec<(u32, usize, usize)> =
+            (0..self.panels.len()).flat_map(sides).map(|(side, index)| (of[index], side, index)).collect();
+        order.sort_unstable();
+        let mut elements = Vec::new();
+        for (face, side, index) in order {
+            let Panel { corners, material, .. } = self.panels[index];
+            let emit = |piece: Corners| {
+                let corners = if side == 0 { piece } else { piece.flipped() };
+                elements.push(Element::new(corners, material, FaceId(face)));
+            };
+            match self.size {
+                ElementSize::Metres(size) => cuts::cut(&corners, size, emit),
+                ElementSize::Mesh => std::iter::once(corners).for_each(emit),
+            }
         }
+        clusters::geometry(elements, faces)
     }
-    order.sort_unstable();
-    let mut elements = Vec::new();
-    for (face, back, index) in order {
-        let Panel { corners, material, .. } = panels[index];
-        cut_up(&corners, size, |piece| {
-            let corners = if back { piece.flipped() } else { piece };
-            elements.push(Element::new(corners, material, FaceId(face)));
-        });
+}
+
+impl Panel {
+    /// How many of its sides have elements: the front, or the back too.
+    fn sides(&self) -> usize {
+        if self.two_sided { 2 } else { 1 }
     }
-    clusters::geometry(elements, faces)
 }
 
 /// Reflectance and emission of every element.
@@ -98,24 +160,9 @@ fn tinted(colour: Rgb, tint: Rgb) -> Rgb {
     std::array::from_fn(|c| colour[c] * tint[c])
 }
 
-/// A triangle or parallelogram of one material that is cut up as a whole.
-#[derive(Clone, Copy)]
-struct Panel {
-    corners: Corners,
-    material: MaterialId,
-    two_sided: bool,
-}
-
-/// The surfaces themselves, or, where elements have their own size, parallelograms joined to larger ones, so that
-/// elements follow the wall and not the tessellation somebody happened to give it.
-fn panels(part: &Part, size: ElementSize) -> Vec<Panel> {
-    let panel =
-        |s: &Surface| Panel { corners: s.corners, material: s.material, two_sided: part.is_two_sided(s) };
-    let own = part.surfaces.iter().map(panel);
-    if size == ElementSize::Mesh {
-        return own.collect();
-    }
-    let (quads, mut panels): (Vec<Panel>, Vec<Panel>) = own.partition(|p| p.corners.as_slice().len() == 4);
+/// The panels with parallelograms of one material joined to larger ones.
+fn joined(panels: impl Iterator<Item = Panel>) -> Vec<Panel> {
+    let (quads, mut panels): (Vec<Panel>, Vec<Panel>) = panels.partition(|p| p.corners.as_slice().len() == 4);
     let polygons: Vec<Face> = quads.iter().map(|panel| polygon(&panel.corners)).collect();
     let Merged { faces, of } =
         merge(&polygons, |i| (quads[i].material.0, quads[i].two_sided), is_parallelogram);
@@ -138,50 +185,4 @@ fn is_parallelogram(corners: &[DVec3]) -> bool {
     let &[a, b, c, d] = corners else { return false };
     let reach = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     ((a + c) - (b + d)).length() <= 2.0 * FLATNESS * reach
-}
-
-fn cut_up(corners: &Corners, size: ElementSize, emit: impl FnMut(Corners)) {
-    let ElementSize::Metres(size) = size else { return std::iter::once(*corners).for_each(emit) };
-    match *corners.as_slice() {
-        [a, b, c] => cut_triangle([a, b, c], size, emit),
-        [a, b, c, d] => cut_quad([a, b, c, d], size, emit),
-        _ => unreachable!("a surface has three or four corners"),
-    }
-}
-
-/// How many pieces an edge needs; an edge that is longer by rounding only does not need another.
-fn pieces(length: f64, size: f64) -> usize {
-    ((length / size) * (1.0 - 1e-6)).ceil().max(1.0) as usize
-}
-
-/// The i-th of n equal steps from a to b. Exact at both ends, and exactly on a coordinate plane that both ends lie on.
-fn step(a: DVec3, b: DVec3, i: usize, n: usize) -> DVec3 {
-    if i == n { b } else { a + (b - a) * (i as f64 / n as f64) }
-}
-
-/// A grid whose pieces share corners to the bit.
-fn cut_quad([a, b, c, d]: [DVec3; 4], size: f64, mut emit: impl FnMut(Corners)) {
-    let across = pieces((b - a).length().max((c - d).length()), size);
-    let along = pieces((d - a).length().max((c - b).length()), size);
-    let at = |i, j| step(step(a, b, i, across), step(d, c, i, across), j, along);
-    for j in 0..along {
-        for i in 0..across {
-            emit(Corners::quad([at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
-        }
-    }
-}
-
-/// n² triangles similar to the whole.
-fn cut_triangle([a, b, c]: [DVec3; 3], size: f64, mut emit: impl FnMut(Corners)) {
-    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
-    let n = pieces(longest, size);
-    let at = |i: usize, j: usize| step(step(a, c, j, n), step(b, c, j, n), i, (n - j).max(1));
-    for j in 0..n {
-        for i in 0..n - j {
-            emit(Corners::triangle([at(i, j), at(i + 1, j), at(i, j + 1)]));
-            if i + j + 1 < n {
-                emit(Corners::triangle([at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]));
-            }
-        }
-    }
 }

@@ -9,6 +9,7 @@ pub mod cached;
 #[cfg(feature = "cli")]
 pub mod cli;
 pub mod clusters;
+pub mod cuts;
 pub mod depfile;
 mod disjoint_sets;
 pub mod elements;

@@ -207,7 +207,7 @@ pub fn local_equilibrium(
 pub fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifest {
     Manifest::new()
         .setting("kernel", KERNEL_VERSION)
-        .setting("element size", part.element_size)
+        .remark("element size", part.element_size)
         .setting("resolution", resolution)
         .digest("geometry", geometry_digest(&part.geometry))
 }

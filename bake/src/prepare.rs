@@ -2,21 +2,22 @@
 
 use crate::bisect::{Cut, bisect, cut_all};
 use crate::clusters;
-use crate::elements::{ElementSize, area, default_size, optics, subdivide};
+use crate::elements::{ElementSize, Panels, area, default_size, optics};
 use crate::equilibrium::default_solver;
 use crate::textures::tints;
 use crate::treecode::Resolution;
 use crate::world::World;
 use equilux_formats::{
-    Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, PartId,
-    Result, Scene, TexturedTriangle, Tints,
+    Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, Part,
+    PartId, Result, Scene, TexturedTriangle, Tints,
 };
 use glam::{DAffine3, DVec3};
 
 /// What a person chooses about elements and parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preparation {
-    /// Element size; none to let the scene decide. A part's own `element_size` comes first.
+    /// Element size, metres of the scene where a part stands largest; none to let the scene decide. A part's own
+    /// `element_size` comes first.
     pub element_size: Option<ElementSize>,
     /// What is a part.
     pub division: Division,
@@ -59,23 +60,25 @@ pub struct PreparedPart {
     pub tints: Tints,
     /// The materials that elements name.
     pub materials: Vec<Material>,
-    /// How large its elements may be.
+    /// How large its elements may be, metres of the scene where it stands largest.
     pub element_size: ElementSize,
     /// Who solves its equilibrium.
     pub solver: LocalSolver,
 }
 
 /// The most elements a part may have: ids are 32 bits, and a matrix of this many rows no machine holds.
-const MOST_ELEMENTS: f64 = 4e6;
+const MOST_ELEMENTS: u128 = 4_000_000;
 
 /// Give every part its elements. Fails where the element size asks for more of them than can be.
 pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
-    let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene));
+    let scales = largest_scales(scene);
+    let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene, &scales));
     let mut parts = Vec::new();
-    for part in &scene.parts {
+    for (part, &scale) in scene.parts.iter().zip(&scales) {
         let size = part.element_size.map_or(element_size, ElementSize::Metres);
-        refuse_too_many(scene, area(part), size)?;
-        let geometry = subdivide(part, size);
+        let panels = Panels::of(part, size.in_units_of(scale));
+        refuse_too_many(scene, part, panels.elements(), size)?;
+        let geometry = panels.geometry();
         let tints = tints(&geometry, &part.materials, &part.textured);
         let solver = part.local_solver.or(wanted.local_solver);
         parts.push(PreparedPart {
@@ -100,23 +103,39 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     })
 }
 
-fn suitable_size(scene: &Scene) -> ElementSize {
-    let scale = |instance: &Instance| instance.placement.matrix3.determinant().abs().cbrt();
-    default_size(scene.instances.iter().map(|i| area(&scene.parts[i.part.index()]) * scale(i).powi(2)).sum())
+/// For each part the metres of the scene that one of its own units makes where it stands largest. Element sizes hold there;
+/// smaller instances share its elements.
+fn largest_scales(scene: &Scene) -> Vec<f64> {
+    let mut scales = vec![0.0; scene.parts.len()];
+    for instance in &scene.instances {
+        let scale: &mut f64 = &mut scales[instance.part.index()];
+        *scale = scale.max(instance.scale());
+    }
+    scales
 }
 
-fn refuse_too_many(scene: &Scene, area: f64, size: ElementSize) -> Result<()> {
-    let ElementSize::Metres(size) = size else { return Ok(()) };
-    let count = area / (size * size);
-    if count <= MOST_ELEMENTS {
+/// A size for about the usual number of elements in all instances.
+fn suitable_size(scene: &Scene, scales: &[f64]) -> ElementSize {
+    let parts = scene.instances.iter().map(|instance| instance.part.index());
+    default_size(parts.map(|part| area(&scene.parts[part]) * scales[part].powi(2)).sum())
+}
+
+fn refuse_too_many(scene: &Scene, part: &Part, elements: u128, size: ElementSize) -> Result<()> {
+    if elements <= MOST_ELEMENTS {
         return Ok(());
     }
-    Err(Error::new(
-        &scene.file,
-        format!("elements of {size} m on {area:.3e} m² of surface are {count:.1e}"),
-        format!("at most {MOST_ELEMENTS:.0e} elements a part"),
-        "choose larger elements with --element-size METRES",
-    ))
+    let found = match size {
+        ElementSize::Metres(size) => {
+            format!("part `{}` in elements of {size} m has {elements} of them", part.name)
+        }
+        ElementSize::Mesh => format!("part `{}` with {elements} faces", part.name),
+    };
+    let remedy = if part.surfaces.len() as u128 > MOST_ELEMENTS {
+        "simplify its mesh, or divide it into several root nodes"
+    } else {
+        "choose larger elements with --element-size METRES"
+    };
+    Err(Error::new(&scene.file, found, format!("at most {MOST_ELEMENTS:e} elements a part"), remedy))
 }
 
 /// The whole scene as one geometry, cut into cells; each cell is a part that stands once.

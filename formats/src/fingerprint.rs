@@ -102,13 +102,15 @@ struct Entry {
     value: Value,
 }
 
-/// A setting is short enough to be told, a detail is not; of larger content only a digest is kept.
+/// A setting is short enough to be told, a detail is not; of larger content only a digest is kept. A remark is no input: it
+/// says in a few words what an input that is kept as a digest came from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Value {
     Setting(String),
     Detail(String),
     Digest(Digest),
+    Remark(String),
 }
 
 impl Manifest {
@@ -125,6 +127,12 @@ impl Manifest {
     /// Adds a setting that is too long to be told, but may be asked for by [`Manifest::details`]. Panics when the label is taken.
     pub fn detail(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
         self.with(label.into(), Value::Detail(value.to_string()))
+    }
+
+    /// Adds words that explain a digest, such as the element size that a geometry was cut to. They are told like a setting,
+    /// but the key does not depend on them: equal content has equal keys. Panics when the label is taken.
+    pub fn remark(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
+        self.with(label.into(), Value::Remark(value.to_string()))
     }
 
     /// The details, with their labels, in order.
@@ -162,11 +170,12 @@ impl Manifest {
     /// The key of whatever is made from exactly this.
     pub fn key(&self) -> Key {
         let content = self.entries.iter().fold(Content::new(), |content, entry| {
-            let content = content.bytes(&entry.label);
+            let labelled = |content: Content| content.bytes(&entry.label);
             match &entry.value {
-                Value::Setting(text) => content.bytes("setting").bytes(text),
-                Value::Detail(text) => content.bytes("detail").bytes(text),
-                Value::Digest(digest) => content.bytes("digest").bytes(digest.0),
+                Value::Setting(text) => labelled(content).bytes("setting").bytes(text),
+                Value::Detail(text) => labelled(content).bytes("detail").bytes(text),
+                Value::Digest(digest) => labelled(content).bytes("digest").bytes(digest.0),
+                Value::Remark(_) => content,
             }
         });
         Key(content.digest())
@@ -174,7 +183,7 @@ impl Manifest {
 
     /// Why a result made from `old` does not serve: one clause an entry that differs, or nothing if the keys agree.
     pub fn difference(&self, old: &Manifest) -> Option<String> {
-        if self == old {
+        if self.key() == old.key() {
             return None;
         }
         let differing = self.entries.iter().filter_map(|entry| entry.clause(old.value(&entry.label)));
@@ -191,9 +200,11 @@ impl Entry {
         let label = &self.label;
         match (old, &self.value) {
             (Some(old), new) if old == new => None,
-            (Some(Value::Setting(old)), Value::Setting(new)) => Some(format!("{label} was {old}, is {new}")),
+            (Some(Value::Setting(old) | Value::Remark(old)), Value::Setting(new) | Value::Remark(new)) => {
+                (old != new).then(|| format!("{label} was {old}, is {new}"))
+            }
             (Some(_), _) => Some(format!("{label} changed")),
-            (None, Value::Setting(new)) => Some(format!("{label} is new, {new}")),
+            (None, Value::Setting(new) | Value::Remark(new)) => Some(format!("{label} is new, {new}")),
             (None, Value::Detail(_) | Value::Digest(_)) => Some(format!("{label} is new")),
         }
     }

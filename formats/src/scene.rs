@@ -58,6 +58,11 @@ pub struct Repainted {
 }
 
 impl Instance {
+    /// The factor of the placement on lengths: so many metres of the scene are one unit of the part's coordinates.
+    pub fn scale(&self) -> f64 {
+        self.placement.matrix3.determinant().abs().cbrt()
+    }
+
     /// The part's `materials` as they are in this place, emission scale included.
     pub fn materials(&self, materials: &[Material]) -> Vec<Material> {
         let mut here = materials.to_vec();

@@ -362,18 +362,27 @@ fn the_reason_names_what_differs() {
     for (new, reason) in cases {
         assert_eq!(new.difference(&old).as_deref(), reason);
     }
+    let cut = |size: &str, x: f64| Manifest::new().digest("geometry", hall(x)).remark("element size", size);
+    for (new, reason) in [
+        (cut("0.5 m", 1.0), Some("geometry changed; element size was 0.25 m, is 0.5 m")),
+        // The same geometry in a scene where it stands half as large.
+        (cut("0.5 m", 0.0), None),
+    ] {
+        assert_eq!(new.difference(&cut("0.25 m", 0.0)).as_deref(), reason);
+    }
     let (ab, ba) =
         (Manifest::new().setting("a", 1).setting("b", 2), Manifest::new().setting("b", 2).setting("a", 1));
     assert_eq!(ab.difference(&ba).as_deref(), Some("the order of the inputs changed"));
 }
 
 fn any_manifest() -> impl Strategy<Value = Manifest> {
-    proptest::collection::vec((any::<bool>(), 0..2u8), 0..4).prop_map(|entries| {
-        entries.into_iter().enumerate().fold(Manifest::new(), |manifest, (i, (is_digest, value))| {
+    proptest::collection::vec((0..3, 0..2u8), 0..4).prop_map(|entries| {
+        entries.into_iter().enumerate().fold(Manifest::new(), |manifest, (i, (kind, value))| {
             let label = ["kernel", "geometry", "size", "tolerance"][i];
-            match is_digest {
-                true => manifest.digest(label, Content::new().bytes([value]).digest()),
-                false => manifest.setting(label, value),
+            match kind {
+                0 => manifest.digest(label, Content::new().bytes([value]).digest()),
+                1 => manifest.setting(label, value),
+                _ => manifest.remark(label, value),
             }
         })
     })

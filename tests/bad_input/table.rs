@@ -71,6 +71,10 @@ fn cases() -> Vec<Case> {
             options: &["--element-size", "1e-5"],
             ..case("dust", Model::of(&furnished()).bytes(), ["at most 4e6 elements", "--element-size"])
         },
+        Case {
+            options: &["--element-size", "1e-5"],
+            ..case("dust, counted", square().bytes(), ["has 10000000000 of them", "larger elements"])
+        },
     ]
 }
 

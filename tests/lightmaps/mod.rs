@@ -1,7 +1,7 @@
 //! Lightmaps: what lies where in them, what light they hold, and what viewers make of the models that carry them.
 
 mod authored;
-mod files;
+pub mod files;
 mod light;
 mod places;
 mod seams;

@@ -2,7 +2,6 @@
 
 use super::{point_of, scene};
 use equilux_assemble::lightmap::atlas::Atlas;
-use equilux_assemble::lightmap::estimate::scale;
 use equilux_assemble::lightmap::grid::MARGIN;
 use equilux_assemble::lightmap::side::sides;
 use equilux_assemble::lightmap::texels::{Texel, Texels, bilinear};
@@ -129,7 +128,7 @@ proptest! {
     fn footprints_add_up_to_the_surface(scene in any_scene(), texel in 0.05..0.6f64) {
         let atlas = Atlas::new(&scene, Some(texel)).expect("a small atlas");
         let whole: f64 = sides(&scene.parts[0]).iter().map(|side| side.area).sum();
-        let expected: f64 = scene.instances.iter().map(|i| whole * scale(i).powi(2)).sum();
+        let expected: f64 = scene.instances.iter().map(|i| whole * i.scale().powi(2)).sum();
         let footprint = |tile: usize| texels_of(&scene, &atlas, tile).texels.iter().map(Texel::area).sum::<f64>();
         let found: f64 = (0..atlas.tiles().len()).map(footprint).sum();
         // Rounding of some thousand pieces.

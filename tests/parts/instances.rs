@@ -114,21 +114,15 @@ fn instanced(data: &[(Vec<u8>, u32, &str, usize, bool)], attributes: Value, extr
     node.extras = extras;
     let mut model = Model::of(&[node]);
     for (bytes, component, kind, count, normalised) in data {
-        model.binary.resize(model.binary.len().next_multiple_of(4), 0);
-        let view = json!({ "buffer": 0, "byteOffset": model.binary.len(), "byteLength": bytes.len() });
-        model.binary.extend(bytes);
-        let views = model.json["bufferViews"].as_array_mut().expect("a list");
-        views.push(view);
-        let accessor = json!({ "bufferView": views.len() - 1, "componentType": component, "type": kind,
-            "count": count, "normalized": normalised });
-        model.json["accessors"].as_array_mut().expect("a list").push(accessor);
+        let accessor =
+            json!({ "componentType": component, "type": kind, "count": count, "normalized": normalised });
+        model.add_accessor(bytes, accessor);
     }
-    model.json["buffers"][0]["byteLength"] = json!(model.binary.len());
     model.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
     model.with("/nodes/0/extensions", json!({ "EXT_mesh_gpu_instancing": { "attributes": attributes } }))
 }
 
-fn floats(values: &[f32]) -> Vec<u8> {
+pub fn floats(values: &[f32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 

@@ -3,6 +3,7 @@
 
 mod bytes;
 mod compressed;
+mod counted;
 mod edits;
 mod inside;
 mod instances;
@@ -10,4 +11,5 @@ mod left_out;
 mod modular;
 mod overrides;
 mod reuse;
+mod scaled;
 mod split;

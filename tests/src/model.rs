@@ -72,6 +72,16 @@ impl Model {
         self
     }
 
+    /// Add an accessor on these bytes, as glTF describes it, and give its number.
+    pub fn add_accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
+        self.binary.resize(self.binary.len().next_multiple_of(4), 0);
+        let view = json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() });
+        self.binary.extend(bytes);
+        self.json["buffers"][0]["byteLength"] = json!(self.binary.len());
+        accessor["bufferView"] = json!(self.push("bufferViews", view));
+        self.push("accessors", accessor)
+    }
+
     /// The bytes of the `.glb` file.
     pub fn bytes(&self) -> Vec<u8> {
         let mut json = self.json.to_string().into_bytes();

@@ -15,7 +15,8 @@ const CELL: f64 = 0.125;
 type Rug = [usize; 4];
 
 fn rugs() -> impl Strategy<Value = Vec<Rug>> {
-    let rug = (1usize..10, 1usize..10, 1usize..6, 1usize..6).prop_map(|(x, z, width, length)| [x, z, x + width, z + length]);
+    let rug = (1usize..10, 1usize..10, 1usize..6, 1usize..6)
+        .prop_map(|(x, z, width, length)| [x, z, x + width, z + length]);
     prop::collection::vec(rug, 2..9)
 }
 
@@ -43,7 +44,8 @@ fn is_rug(lit: &Lit) -> bool {
 
 /// How many cells any of the rugs covers.
 fn covered(rugs: &[Rug]) -> usize {
-    let is_in = |x: usize, z: usize| rugs.iter().any(|r| (r[0]..r[2]).contains(&x) && (r[1]..r[3]).contains(&z));
+    let is_in =
+        |x: usize, z: usize| rugs.iter().any(|r| (r[0]..r[2]).contains(&x) && (r[1]..r[3]).contains(&z));
     (0..16).flat_map(|x| (0..16).map(move |z| (x, z))).filter(|&(x, z)| is_in(x, z)).count()
 }
 
@@ -127,7 +129,12 @@ fn a_two_sided_sheet_keeps_the_side_that_nothing_lies_on() {
             found.elements.iter().filter(on_side).map(|lit| lit.area).sum::<f64>()
         };
         // Both sides are lit, each once.
-        assert!((area(1.0) - 1.0).abs() < 1e-9 && (area(-1.0) - 1.0).abs() < 1e-9, "{order}: {} and {} m²", area(1.0), area(-1.0));
+        assert!(
+            (area(1.0) - 1.0).abs() < 1e-9 && (area(-1.0) - 1.0).abs() < 1e-9,
+            "{order}: {} and {} m²",
+            area(1.0),
+            area(-1.0)
+        );
         let worst = found.worst(|_| [1.0; 3]);
         assert!(worst.error < 1e-6, "{order}: {} in a furnace of {}", worst.got, worst.expected);
     }

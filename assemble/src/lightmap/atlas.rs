@@ -7,7 +7,7 @@
 
 use super::authored::Sheets;
 use super::chart::{Chart, charts};
-use super::estimate::{Estimate, PartCharts, scale};
+use super::estimate::{Estimate, PartCharts};
 use super::grid::{Grid, MARGIN};
 use super::pack::{Spot, pack};
 use equilux_formats::{Error, PartId, Result, Scene};
@@ -95,11 +95,11 @@ impl Atlas {
         let mut of_instance = Vec::new();
         for instance in &scene.instances {
             // Scales that differ by rounding only share a layout.
-            let key = (instance.part, (scale(instance).ln() * 1e6).round() as i64);
+            let key = (instance.part, (instance.scale().ln() * 1e6).round() as i64);
             let layout = *known.entry(key).or_insert(layouts.len());
             if layout == layouts.len() {
                 let part = &mut parts[instance.part.index()];
-                layouts.push(lay_out(scene, instance.part, part, texel_size / scale(instance))?);
+                layouts.push(lay_out(scene, instance.part, part, texel_size / instance.scale())?);
             }
             of_instance.push(layout);
         }

@@ -5,7 +5,7 @@ use super::authored::Authored;
 use super::bounds::Bounds;
 use super::chart::{Chart, charts};
 use super::grid::MARGIN;
-use equilux_formats::{Instance, Part, Scene};
+use equilux_formats::{Part, Scene};
 use std::sync::Arc;
 
 /// So many texels an atlas gets when nobody says otherwise.
@@ -36,11 +36,6 @@ impl PartCharts {
     }
 }
 
-/// The factor of an instance's placement on lengths.
-pub fn scale(instance: &Instance) -> f64 {
-    instance.placement.matrix3.determinant().abs().cbrt()
-}
-
 /// What charts take of an atlas: with texels of t metres Σ (w/t + m)(h/t + m), where m is what a chart takes beyond its
 /// extent, a polynomial in 1/t.
 pub struct Estimate {
@@ -53,7 +48,7 @@ impl Estimate {
         let parts: Vec<[f64; 3]> = parts.iter().map(Self::of_part).collect();
         let mut coefficients = [0.0; 3];
         for instance in &scene.instances {
-            let ([a, b, c], scale) = (parts[instance.part.index()], scale(instance));
+            let ([a, b, c], scale) = (parts[instance.part.index()], instance.scale());
             coefficients[0] += a;
             coefficients[1] += b * scale;
             coefficients[2] += c * scale * scale;

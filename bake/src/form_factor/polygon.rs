@@ -16,15 +16,15 @@ pub type Polygon = SmallVec<[DVec3; 10]>;
 pub enum Side {
     /// The whole polygon.
     All,
-    /// Nothing, or no more than an edge.
+    /// Nothing, or no more than an edge or a corner.
     None,
     /// This piece of it.
     Piece(Polygon),
 }
 
 /// The part of `polygon` where `distance` (an affine function of the point) is positive. Corners on the plane belong
-/// to both sides, and a polygon that only touches the plane is not cut. No epsilon: signs decide, and the cut point
-/// lies between the corners it came from.
+/// to both sides, and a polygon that only touches the plane is not cut. Signs decide, and the cut point lies between the
+/// corners it came from. A piece that is no higher than its corners are rounded by is an edge, and is none.
 pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
     let distances: SmallVec<[f64; 12]> = polygon.iter().map(|&p| distance(p)).collect();
     if distances.iter().all(|&d| d >= 0.0) {
@@ -44,7 +44,38 @@ pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
             piece.push(p + (q - p) * (dp / (dp - dq)));
         }
     }
-    Side::Piece(piece)
+    if is_edge(&piece) { Side::None } else { Side::Piece(piece) }
+}
+
+/// The pieces of `polygon` on both sides of a plane: where `distance` is positive, and where it is negative. What lies in the
+/// plane altogether is the first.
+pub fn part(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> [Option<Polygon>; 2] {
+    let side = |sign: f64| match clip(polygon, |p| sign * distance(p)) {
+        Side::All => Some(Polygon::from_slice(polygon)),
+        Side::None => None,
+        Side::Piece(piece) => Some(piece),
+    };
+    match [side(1.0), side(-1.0)] {
+        [None, None] => [Some(Polygon::from_slice(polygon)), None],
+        sides => sides,
+    }
+}
+
+/// What a corner that was cut is off by, relative to its distance from the origin: the roundings of a few sums and products.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// Whether a planar convex polygon is no higher over its longest edge than its corners are rounded by.
+fn is_edge(polygon: &[DVec3]) -> bool {
+    let origin = polygon[0];
+    let (mut double_area, mut longest2, mut reach2) = (DVec3::ZERO, 0.0_f64, 0.0_f64);
+    let mut from = polygon[polygon.len() - 1];
+    for &to in polygon {
+        double_area += (from - origin).cross(to - origin);
+        longest2 = longest2.max((to - from).length_squared());
+        reach2 = reach2.max(to.length_squared());
+        from = to;
+    }
+    double_area.length_squared() <= ROUNDING * ROUNDING * longest2 * reach2
 }
 
 /// The pyramid of directions that a convex occluder hides from the origin.
@@ -209,6 +240,54 @@ fn turns_left(way: &[(DVec2, DVec3)], to: (DVec2, DVec3), sine: f64) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::dvec3;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// A plane through a triangle of any shape, near a corner or an edge of it or elsewhere: both pieces have an area, are
+        /// on their side, and what is missing of the whole is rounding.
+        #[test]
+        fn both_sides_of_a_cut_have_an_area_or_are_none(
+            corners in prop::array::uniform3(prop::array::uniform3(-8.0..8.0_f64)),
+            flat in prop_oneof![Just(1.0), Just(1e-6), Just(1e-15)],
+            (normal, corner) in (prop::array::uniform3(-1.0..1.0_f64), 0..3_usize),
+            off in prop_oneof![Just(0.0), -1e-13..1e-13_f64, -3.0..3.0_f64],
+        ) {
+            let [a, b, mut c] = corners.map(DVec3::from_array);
+            c = a.lerp(b, 0.3) + (c - a.lerp(b, 0.3)) * flat;
+            let (triangle, normal) = ([a, b, c], DVec3::from_array(normal).normalize_or(DVec3::X));
+            let height = |p: DVec3| normal.dot(p - triangle[corner]) - off;
+            let area = |polygon: &[DVec3]| {
+                let fan = polygon.windows(2).skip(1).map(|e| (e[0] - polygon[0]).cross(e[1] - polygon[0]));
+                fan.sum::<DVec3>().length() / 2.0
+            };
+            let mut sum = 0.0;
+            for sign in [1.0, -1.0] {
+                match clip(&triangle, |p| sign * height(p)) {
+                    Side::All => sum += area(&triangle),
+                    Side::None => {}
+                    Side::Piece(piece) => {
+                        sum += area(&piece);
+                        prop_assert!(area(&piece) > 0.0, "{piece:?}");
+                        // Heights are rounded like the coordinates.
+                        prop_assert!(piece.iter().all(|&p| sign * height(p) >= -1e-13), "{piece:?}");
+                    }
+                }
+            }
+            // Coordinates up to 14 m, edges up to 28 m: what an edge has for an area.
+            let rounding = 14.0 * 28.0 * ROUNDING;
+            prop_assert!((sum - area(&triangle)).abs() <= 2.0 * rounding, "{} of {}", sum, area(&triangle));
+        }
+    }
+
+    #[test]
+    fn a_corner_that_reaches_over_by_rounding_is_no_piece() {
+        let square =
+            [DVec3::ZERO, DVec3::X, dvec3(1.0, 1.0, 0.0), DVec3::Y].map(|p| p + dvec3(90.0, 0.0, 90.0));
+        let beyond = clip(&square, |p| p.x - (91.0 - 1e-14));
+        assert!(matches!(beyond, Side::None), "a strip of one step of f64: {beyond:?}");
+        assert!(matches!(clip(&square, |p| p.x - (91.0 - 1e-12)), Side::Piece(_)), "a strip of seventy");
+    }
 
     /// Columns of a grid differ by rounding; whichever point of one comes first, the hull has the four corners.
     #[test]

@@ -4,9 +4,17 @@
 //! the middle of what an edge has of a texel, times the height of that, is exact. What a footprint costs so grows with
 //! its outline and not with its area. Squares, and not the bilinear blend that screens show, because both have the same
 //! average over whole texels, and because blends would reach across the edge of what an author laid out.
+//!
+//! A footprint that is a point or a line up to rounding has no area to divide by: faces whose coordinates all lie on one
+//! colour of a palette, or along a gradient of it. There the polygon itself is divided by the texels that the line crosses.
+//! A texel holds its left and upper border, so a point on the border of two texels has the colour of the one to the right
+//! or below, as the image repeats, mirrors or ends there.
 
+use super::area_and_middle;
+use crate::form_factor::polygon::{Polygon, part};
 use equilux_formats::{Rgb, Texture, Wrap};
-use glam::{DVec2, dvec2};
+use glam::{DVec2, DVec3, dvec2};
+use smallvec::SmallVec;
 
 /// The value of a texel of full colour and alpha.
 const ONE: f64 = (1_u64 << 32) as f64 * 255.0;
@@ -14,8 +22,8 @@ const ONE: f64 = (1_u64 << 32) as f64 * 255.0;
 const STRIDE: usize = 16;
 /// Footprints whose edges cross more texels than this, in images that repeat, take the average of the image.
 const MOST_CROSSINGS: f64 = 1e6;
-/// Footprints of less area than this, in squares of their outline, are lines.
-const LINE: f64 = 1e-9;
+/// Footprints narrower than this, in texels, are lines: far more than rounding, far less than would show.
+const LINE: f64 = 1e-6;
 
 /// A texture with sums along its rows.
 pub(super) struct Sums<'a> {
@@ -48,32 +56,71 @@ impl<'a> Sums<'a> {
         sums
     }
 
-    /// The average over the polygon with these corners, in widths and heights of the image; of what has no area, over its
-    /// outline; of a point, its texel.
-    pub(super) fn mean(&self, corners: &[DVec2]) -> Rgb {
-        let [width, height] = self.texture.size.map(f64::from);
-        let corners: Vec<DVec2> = corners.iter().map(|corner| *corner * dvec2(width, height)).collect();
-        let edges = || (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]));
-        let outline: f64 = edges().map(|(from, to)| (to - from).abs().element_sum()).sum();
+    /// The average over a planar convex polygon, of which `at` says where its points lie, in widths and heights of the image.
+    pub(super) fn mean(&self, polygon: &[DVec3], at: impl Fn(DVec3) -> DVec2) -> Rgb {
+        let size = DVec2::from_array(self.texture.size.map(f64::from));
+        let start = self.period_of(at(polygon[0]) * size);
+        let at = |p: DVec3| at(p) * size - start;
+        let corners: Footprint = polygon.iter().map(|&p| at(p)).collect();
+        let low = corners.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+        let high = corners.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+        if (high - low.floor()).max_element() <= 1.0 {
+            return self.at(low);
+        }
+        let outline: f64 = edges(&corners).map(|(from, to)| (to - from).abs().element_sum()).sum();
         if outline > MOST_CROSSINGS && self.texture.wrap != [Wrap::Clamp; 2] {
             return self.whole();
         }
-        let from = corners[0];
-        let area = edges().map(|(p, q)| (p - from).perp_dot(q - from)).sum::<f64>() / 2.0;
-        let line = area.abs() <= LINE * outline * outline;
-        let (mut sum, mut weight) = ([0.0; 3], 0.0);
-        for (from, to) in edges() {
-            self.walk(from, to, |middle, length, rise| {
-                let (value, step) = match line {
-                    true => (self.at(middle), length),
-                    false => (self.left_of(middle), rise),
-                };
-                (0..3).for_each(|c| sum[c] += value[c] * step);
-                weight += if line { length } else { 0.0 };
-            });
+        match line_through(&corners) {
+            Some(line) => self.along_line(polygon, at, line),
+            None => self.inside(&corners),
         }
-        let weight = if line { weight } else { area };
-        if weight == 0.0 { self.at(from) } else { sum.map(|sum| sum / weight) }
+    }
+
+    /// Where the image begins of which a place, counted in texels, lies in a copy: numbers near zero keep their digits.
+    fn period_of(&self, place: DVec2) -> DVec2 {
+        let start = |axis: usize| {
+            let size = f64::from(self.texture.size[axis]);
+            match self.texture.wrap[axis] {
+                Wrap::Repeat => (place[axis] / size).floor() * size,
+                Wrap::Mirror => (place[axis] / (2.0 * size)).floor() * 2.0 * size,
+                Wrap::Clamp => 0.0,
+            }
+        };
+        dvec2(start(0), start(1))
+    }
+
+    /// The average inside corners, counted in texels.
+    fn inside(&self, corners: &[DVec2]) -> Rgb {
+        let from = corners[0];
+        let area = edges(corners).map(|(p, q)| (p - from).perp_dot(q - from)).sum::<f64>() / 2.0;
+        let mut sum = [0.0; 3];
+        for (from, to) in edges(corners) {
+            for ends in self.stops(from, to).windows(2) {
+                let value = self.left_of(between(from, to, ends));
+                let rise = (to.y - from.y) * (ends[1] - ends[0]);
+                (0..3).for_each(|c| sum[c] += value[c] * rise);
+            }
+        }
+        sum.map(|sum| sum / area)
+    }
+
+    /// The average over a polygon whose points lie on a line as `at` says, counted in texels.
+    fn along_line(&self, polygon: &[DVec3], at: impl Fn(DVec3) -> DVec2, [from, to]: [DVec2; 2]) -> Rgb {
+        let along = to - from;
+        let share = |p: DVec3| (at(p) - from).dot(along) / along.length_squared();
+        let (mut rest, mut sum, mut whole) = (Some(Polygon::from_slice(polygon)), [0.0; 3], 0.0);
+        for ends in self.stops(from, to).windows(2) {
+            let Some(left) = rest.take() else { break };
+            let parts = if ends[1] == 1.0 { [Some(left), None] } else { part(&left, |p| ends[1] - share(p)) };
+            let [near, far] = parts;
+            rest = far;
+            let Some(near) = near else { continue };
+            let (area, colour) = (area_and_middle(&near).0, self.at(between(from, to, ends)));
+            (0..3).for_each(|c| sum[c] += colour[c] * area);
+            whole += area;
+        }
+        if whole > 0.0 { sum.map(|sum| sum / whole) } else { self.at((from + to) / 2.0) }
     }
 
     fn whole(&self) -> Rgb {
@@ -83,9 +130,9 @@ impl<'a> Sums<'a> {
         sum.map(|sum| sum / (ONE * (width * height) as f64))
     }
 
-    /// Each piece that an edge has of a texel: its middle, length, and rise along y.
-    fn walk(&self, from: DVec2, to: DVec2, mut piece: impl FnMut(DVec2, f64, f64)) {
-        let mut stops = vec![1.0];
+    /// Where an edge passes from texel to texel, in shares of it from 0 to 1.
+    fn stops(&self, from: DVec2, to: DVec2) -> Vec<f64> {
+        let mut stops = vec![0.0, 1.0];
         for axis in 0..2 {
             let (low, high) = (from[axis].min(to[axis]), from[axis].max(to[axis]));
             let (low, high) = match self.texture.wrap[axis] {
@@ -98,15 +145,8 @@ impl<'a> Sums<'a> {
         }
         stops.retain(|stop| (0.0..=1.0).contains(stop));
         stops.sort_unstable_by(f64::total_cmp);
-        let mut start = 0.0;
-        for stop in stops {
-            let share = stop - start;
-            if share > 0.0 {
-                let middle = from.lerp(to, (start + stop) / 2.0);
-                piece(middle, (to - from).length() * share, (to.y - from.y) * share);
-            }
-            start = stop;
-        }
+        stops.dedup();
+        stops
     }
 
     /// The colour at a place, counted in texels.
@@ -173,6 +213,33 @@ impl<'a> Sums<'a> {
     }
 }
 
+/// Corners of a polygon in an image, counted in texels.
+type Footprint = SmallVec<[DVec2; 10]>;
+
+fn edges(corners: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
+    (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]))
+}
+
+/// The place halfway between two shares of an edge; on a line along the image that the edge lies on.
+fn between(from: DVec2, to: DVec2, ends: &[f64]) -> DVec2 {
+    from + (to - from) * ((ends[0] + ends[1]) / 2.0)
+}
+
+/// The ends of a footprint that is a line up to rounding.
+fn line_through(corners: &[DVec2]) -> Option<[DVec2; 2]> {
+    let farthest = |from: DVec2| {
+        let by_distance =
+            |a: &DVec2, b: &DVec2| (*a - from).length_squared().total_cmp(&(*b - from).length_squared());
+        corners.iter().copied().max_by(by_distance).expect("a polygon has corners")
+    };
+    let to = farthest(corners[0]);
+    let from = farthest(to);
+    let across = (to - from).perp().normalize_or_zero();
+    let aside = corners.iter().map(|&corner| across.dot(corner - from));
+    let (low, high) = aside.fold((0.0_f64, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
+    (high - low <= LINE).then_some([from, to])
+}
+
 fn plus(a: [u64; 3], b: [u64; 3]) -> [u64; 3] {
     std::array::from_fn(|c| a[c] + b[c])
 }
@@ -185,6 +252,9 @@ fn linear(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use equilux_formats::{MaterialId, TexturedTriangle};
+    use glam::dvec3;
+    use proptest::prelude::*;
 
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
 
@@ -203,10 +273,13 @@ mod tests {
             let sums = Sums::new(&texture);
             let (from, u, v) = (dvec2(-1.3, 2.7), dvec2(2.9, 0.4), dvec2(-0.3, -3.8));
             let quad = [from, from + u, from + u + v, from + v];
-            let mean = sums.mean(&quad);
+            let mean = mean_of(&sums, &quad);
             let mut reversed = quad;
             reversed.reverse();
-            assert_eq!(sums.mean(&reversed).map(|x| (x * 1e9).round()), mean.map(|x| (x * 1e9).round()));
+            let digits = |mean: Rgb| mean.map(|x| (x * 1e9).round());
+            assert_eq!(digits(mean_of(&sums, &reversed)), digits(mean));
+            let far = quad.map(|place| place + dvec2(1000.0, -74.0));
+            assert!(wrap.contains(&Wrap::Clamp) || digits(mean_of(&sums, &far)) == digits(mean), "{wrap:?}");
             let mut points = [0.0; 3];
             for k in 0..160_000 {
                 let (s, t) = ((f64::from(k % 400) + 0.5) / 400.0, (f64::from(k / 400) + 0.5) / 400.0);
@@ -219,18 +292,108 @@ mod tests {
         }
     }
 
+    /// The mean over a polygon that lies in the image itself.
+    fn mean_of(sums: &Sums, places: &[DVec2]) -> Rgb {
+        let polygon: Vec<DVec3> = places.iter().map(|place| place.extend(0.0)).collect();
+        sums.mean(&polygon, DVec3::truncate)
+    }
+
     #[test]
-    fn lines_points_and_the_whole_have_their_colours() {
-        let texture = Texture {
-            size: [2, 1],
-            texels: vec![[255; 4], [0, 0, 0, 255]],
-            wrap: [Wrap::Repeat, Wrap::Repeat],
-        };
-        let sums = Sums::new(&texture);
-        assert_eq!(sums.mean(&[dvec2(0.25, 0.5); 3]), [1.0; 3], "a point of the white texel");
-        let line = [dvec2(0.0, 0.5), dvec2(0.8, 0.5), dvec2(0.8, 0.5)];
-        assert!((sums.mean(&line)[0] - 0.625).abs() < 1e-12, "0.5 of 0.8 are white");
+    fn what_reaches_over_too_many_texels_has_the_mean_of_all() {
+        let texture =
+            Texture { size: [2, 1], texels: vec![[255; 4], [0, 0, 0, 255]], wrap: [Wrap::Repeat; 2] };
         let far = [DVec2::ZERO, dvec2(1e9, 0.0), dvec2(0.0, 1e9)];
-        assert_eq!(sums.mean(&far), [0.5; 3], "half of the image");
+        assert_eq!(mean_of(&Sums::new(&texture), &far), [0.5; 3], "half of the image");
+    }
+
+    /// A triangle (0, 0), (1, 0), (1, 1) whose coordinates lie on a line: x² of it lies left of x.
+    #[test]
+    fn a_line_has_what_of_the_surface_lies_along_it() {
+        let texture =
+            Texture { size: [2, 1], texels: vec![[255; 4], [0, 0, 0, 255]], wrap: [Wrap::Repeat; 2] };
+        let sums = Sums::new(&texture);
+        let triangle = [DVec3::ZERO, DVec3::X, dvec3(1.0, 1.0, 0.0)];
+        for (v, slope) in [(0.5, 0.0), (0.0, 0.0), (1.0, 0.0), (-0.2, 0.4), (0.3, 1e-8)] {
+            let white = sums.mean(&triangle, |p| dvec2(0.8 * p.x, v + slope * p.x))[0];
+            assert!((white - 0.625 * 0.625).abs() < 1e-9, "{white} along v = {v} + {slope} x");
+        }
+    }
+
+    /// Case 34: one bright texel among dark ones.
+    fn bright(size: [u32; 2], at: [u32; 2], wrap: [Wrap; 2]) -> Texture {
+        let texel = |i: u32| if [i % size[0], i / size[0]] == at { [255; 4] } else { [10, 10, 10, 255] };
+        Texture { size, texels: (0..size[0] * size[1]).map(texel).collect(), wrap }
+    }
+
+    proptest! {
+        /// Any part of any face whose coordinates lie on a point, on a line inside a row of texels, or within 1e-7 of a point.
+        #[test]
+        fn a_point_or_a_line_has_the_colour_of_its_texel(
+            size in prop::array::uniform2(1..300_u32),
+            (u, v) in (prop::array::uniform2(0.0..1.0_f64), prop::array::uniform2(-3..1000_i32)),
+            wrap in prop::array::uniform2(prop::sample::select(WRAPS.to_vec())),
+            face in prop::array::uniform3(prop::array::uniform3(-9.0..9.0_f64)),
+            jitter in prop::array::uniform3(prop::array::uniform2(-1.0..1.0_f64)),
+            (spread, share) in (0..3, 0.1..0.9_f64),
+        ) {
+            let (size_of, copy) = (DVec2::from_array(size.map(f64::from)), DVec2::from_array(v.map(f64::from)));
+            // Not nearer to the border of a texel than the spread, and than what f32 coordinates are rounded by.
+            let inside = (DVec2::from_array(u) * size_of).floor() + 0.5 + 0.3 * (DVec2::from_array(jitter[0]));
+            let copy = DVec2::select(DVec2::from_array(u).cmplt(DVec2::splat(0.5)), copy, DVec2::ZERO);
+            let place = (inside / size_of + copy).as_vec2().as_dvec2();
+            let at = |axis: usize| {
+                let (texels, texel) = (i64::from(size[axis]), (place[axis] * size_of[axis]).floor() as i64);
+                (match wrap[axis] {
+                    Wrap::Clamp => texel.clamp(0, texels - 1),
+                    Wrap::Repeat => texel.rem_euclid(texels),
+                    Wrap::Mirror => {
+                        let there = texel.rem_euclid(2 * texels);
+                        there.min(2 * texels - 1 - there)
+                    }
+                }) as u32
+            };
+            let texture = bright(size, [at(0), at(1)], wrap);
+            prop_assume!(copy == DVec2::ZERO || (place * size_of).fract_gl().cmpgt(DVec2::splat(0.1)).all());
+            let off = jitter.map(|[x, y]| match spread {
+                0 => DVec2::ZERO,
+                1 => dvec2(x, y) * 1e-7,
+                // Along a line of whatever slope, inside the texel.
+                _ => (dvec2(jitter[0][0], jitter[1][1]) * x * 0.05) / size_of,
+            });
+            let [a, b, c] = face.map(DVec3::from_array);
+            let normal = (b - a).cross(c - a);
+            prop_assume!(normal.length() > 1e-3);
+            let places = off.map(|off| place + off);
+            let triangle = TexturedTriangle {
+                material: MaterialId(0),
+                corners: [a, b, c],
+                colours: [[1.0; 3]; 3],
+                reflectance_at: None,
+                emission_at: None,
+            };
+            let sheet = super::super::Sheet::new(&triangle);
+            let element = [a.lerp(b, share), b.lerp(c, share), c.lerp(a, share)];
+            let found = Sums::new(&texture).mean(&element, |p| sheet.at(p, places));
+            prop_assert_eq!(found, [1.0; 3], "{} in a texture of {:?}, {:?}", place, size, wrap);
+        }
+    }
+
+    #[test]
+    fn a_point_on_a_border_has_the_texel_right_of_it_or_below() {
+        // Columns of 1, 2, 3 and 4 sixteenths of full colour.
+        let texels = (1..=4_u8).flat_map(|column| [[255, 255, 255, 16 * column - 1]; 1]).collect::<Vec<_>>();
+        let texels = [texels.clone(), texels].concat();
+        for (wrap, borders) in [
+            (Wrap::Repeat, [(0.25, 2), (0.5, 3), (0.0, 1), (1.0, 1), (-0.25, 4), (1000.75, 4)]),
+            (Wrap::Mirror, [(0.25, 2), (0.5, 3), (0.0, 1), (1.0, 4), (-0.25, 1), (1001.25, 3)]),
+            (Wrap::Clamp, [(0.25, 2), (0.5, 3), (0.0, 1), (1.0, 4), (-0.25, 1), (1000.0, 4)]),
+        ] {
+            let texture = Texture { size: [4, 2], texels: texels.clone(), wrap: [wrap; 2] };
+            for (u, column) in borders {
+                let found = mean_of(&Sums::new(&texture), &[dvec2(u, 0.5); 3])[0];
+                let expected = f64::from(16 * column - 1) / 255.0;
+                assert!((found - expected).abs() < 1e-12, "{wrap:?} at {u}: {found}, expected {expected}");
+            }
+        }
     }
 }

@@ -86,8 +86,7 @@ impl<'a> Coat<'a> {
             let (area, middle) = area_and_middle(piece);
             let tint = |texture: &Option<Arc<Texture>>, places: Option<[DVec2; 3]>| {
                 let (Some(texture), Some(places)) = (texture, places) else { return [1.0; 3] };
-                let places: Vec<DVec2> = piece.iter().map(|&p| sheet.at(p, places)).collect();
-                self.sums[&Arc::as_ptr(texture).addr()].mean(&places)
+                self.sums[&Arc::as_ptr(texture).addr()].mean(piece, |p| sheet.at(p, places))
             };
             let colour = sheet.colour(middle);
             let painted = tint(&textures.reflectance, sheet.triangle.reflectance_at);
@@ -168,9 +167,10 @@ impl<'a> Sheet<'a> {
         [1.0 - second - third, second, third]
     }
 
-    fn at(&self, p: DVec3, places: [DVec2; 3]) -> DVec2 {
-        let weights = self.weights(p);
-        places[0] * weights[0] + places[1] * weights[1] + places[2] * weights[2]
+    /// By differences, so that corners in one place, or on one line along the image, are exactly there.
+    fn at(&self, p: DVec3, [a, b, c]: [DVec2; 3]) -> DVec2 {
+        let [_, second, third] = self.weights(p);
+        a + (b - a) * second + (c - a) * third
     }
 
     fn colour(&self, p: DVec3) -> Rgb {

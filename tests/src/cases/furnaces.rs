@@ -8,7 +8,7 @@ use crate::model::{Model, Node};
 use crate::rooms::half;
 use crate::shapes::{fine, grey, joined, moved, part, quad, rectangle, room, self_block, solid, triangle};
 use equilux_bake::equilibrium::{LocalSystem, factorise};
-use equilux_formats::{LocalSolver, Part};
+use equilux_formats::{LocalSolver, Part, Surface};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use serde_json::json;
 
@@ -53,6 +53,10 @@ pub fn cases() -> Vec<Case> {
             let duct = room(grey(0.9, 1.0), DVec3::ZERO, dvec3(1024., 2f64.powi(-10), 2f64.powi(-10)));
             furnace(&[Node::new("duct", duct)], &Setting::mesh())
         }),
+        Case::new("furnace of slivers", 1e-10, "clipped slivers round worse than whole faces", slivers),
+        Case::new("furnace of slivers, in 8 parts", 1e-10, "the same across couplings", || {
+            furnace(&[Node::new("duct", duct_of_slivers())], &Setting::metres(0.25).cut(8))
+        }),
         Case::new("spherical furnace of 320 facets", 1e-12, sums, || {
             furnace(&[ball_room(2)], &Setting::mesh())
         }),
@@ -81,6 +85,41 @@ fn cube(reflectance: f64) -> Part {
 
 fn cube_of(reflectance: f64) -> Finding {
     furnace(&[Node::new("cube", cube(reflectance))], &Setting::metres(0.2))
+}
+
+/// A duct of 8 × 1 × 1 m whose long walls are needles, flat triangles and what is left between them.
+fn duct_of_slivers() -> Part {
+    let mut duct = room(grey(0.9, 1.0), DVec3::ZERO, dvec3(8.0, 1.0, 1.0));
+    let is_long =
+        |surface: &Surface| (surface.corners.as_slice()[0] - surface.corners.as_slice()[2]).length() > 2.0;
+    let (long, ends): (Vec<Surface>, Vec<Surface>) = duct.surfaces.into_iter().partition(is_long);
+    duct.surfaces = ends;
+    for wall in long {
+        // From the end of a short edge on, so that `along` is a long one.
+        let mut corners = wall.corners.as_slice().to_vec();
+        while (corners[1] - corners[0]).length() < 2.0 {
+            corners.rotate_left(1);
+        }
+        let (from, along, up) = (corners[0], corners[1] - corners[0], corners[3] - corners[0]);
+        let at = |s: f64, t: f64| from + along * s + up * t;
+        let apex = at(0.375, 0.0625);
+        duct = triangle(duct, [at(0.0, 0.0), at(1.0, 0.0), apex]);
+        duct = triangle(duct, [at(0.0, 0.0), apex, at(0.0, 1.0)]);
+        duct = triangle(duct, [apex, at(1.0, 1.0), at(0.0, 1.0)]);
+        for step in 0..8 {
+            let [low, high] = [step, step + 1].map(|k| at(1.0, f64::from(k) / 8.0));
+            duct = triangle(duct, [apex, low, high]);
+        }
+    }
+    duct
+}
+
+fn slivers() -> Finding {
+    let duct = duct_of_slivers();
+    let solved = light(&[Node::new("duct", duct.clone())], &Setting::metres(0.25));
+    // Similar triangles would be 32 × 32 a sliver.
+    assert!(solved.elements.len() < 4000, "{} elements", solved.elements.len());
+    solved.worst(uniform)
 }
 
 /// Two boxes that touch nothing, turned, in the unit cube.
