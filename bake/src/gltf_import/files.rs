@@ -1,5 +1,5 @@
-//! The only place where the importer touches the disk. In go references found in files, out come bytes, the list of
-//! files that were read, and the promise that none of them lies outside the scene's folder.
+//! The only place where the importer touches the disk. Resolves references found in files, reads the files, lists what was
+//! read, and refuses whatever lies outside the scene's folder.
 
 use equilux_formats::{Error, Result};
 use std::fs;
@@ -38,16 +38,32 @@ impl Files {
         Ok(bytes)
     }
 
-    /// The file that `reference` means in the file `from`; one file has one path, however it is referred to.
-    pub(super) fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf> {
+    /// Like [`Files::read`]; errors name the file `from` and what in it refers to `path`.
+    pub(super) fn read_referenced(&mut self, from: &Path, path: &Path, what: &str) -> Result<Vec<u8>> {
+        self.read(path).map_err(|error| {
+            Error::new(
+                from,
+                format!("{what} in {}, which {}", path.display(), error.found),
+                error.expected,
+                error.remedy,
+            )
+        })
+    }
+
+    /// The file that `reference` means in the file `from`; one file has one path, however it is referred to. `what` says in
+    /// errors what refers to it.
+    pub(super) fn resolve(&self, from: &Path, reference: &str, what: &str) -> Result<PathBuf> {
         let refused = |why: &str| {
             Error::new(
                 from,
-                format!("the reference '{reference}', which {why}"),
+                format!("{what} with the reference '{reference}', which {why}"),
                 "a relative path to a file in the scene's folder",
                 "move that file beside the scene and refer to it by a relative path",
             )
         };
+        if reference.is_empty() {
+            return Err(refused("is empty"));
+        }
         if has_scheme(reference) {
             return Err(refused("is a URL or an absolute path"));
         }
@@ -61,13 +77,19 @@ impl Files {
         let target = self.root.join(&relative).canonicalize().map_err(|error| {
             Error::new(
                 from,
-                format!("the reference '{reference}', but {} cannot be read ({error})", relative.display()),
+                format!(
+                    "{what} with the reference '{reference}', but {} cannot be read ({error})",
+                    relative.display()
+                ),
                 "an existing file",
                 "put the file there or correct the reference",
             )
         })?;
         let inside =
             target.strip_prefix(&self.root).map_err(|_| refused("leaves the scene's folder by a link"))?;
+        if target.is_dir() {
+            return Err(refused("is a folder"));
+        }
         Ok(self.folder.join(inside))
     }
 }
