@@ -1,9 +1,23 @@
 //! The only place where the importer touches the disk. Resolves references found in files, reads the files, lists what was
 //! read, and refuses whatever lies outside the scene's folder.
 
+use super::document::file_name;
 use equilux_formats::{Error, Result};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
+
+/// Whether `path` is called as glTF files are.
+pub fn is_gltf(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
+}
+
+/// The glTF files in `folder`, but not in folders in it, sorted; none if it cannot be read.
+pub fn scenes_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut scenes: Vec<PathBuf> = entries.filter(|path| is_gltf(path) && path.is_file()).collect();
+    scenes.sort();
+    scenes
+}
 
 /// The scene's folder and what was read in it.
 pub(super) struct Files {
@@ -28,6 +42,9 @@ impl Files {
     /// Reads all of `path`, which is the scene or came from [`Files::resolve`].
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>> {
         let metadata = fs::metadata(path).map_err(|error| unreadable(path, &error))?;
+        if metadata.is_dir() {
+            return Err(not_one_scene(path));
+        }
         if !metadata.is_file() {
             return Err(Error::new(path, "not a regular file", "a file that can be read", "name a file"));
         }
@@ -114,6 +131,19 @@ fn leaves(relative: &Path) -> Option<Component<'_>> {
         }
     }
     None
+}
+
+/// The error about a folder where a scene should be.
+fn not_one_scene(folder: &Path) -> Error {
+    let found = match &scenes_in(folder)[..] {
+        [] => "a folder without a .gltf or .glb file in it".to_owned(),
+        [only] => format!("a folder with {}", file_name(only)),
+        [first, second, rest @ ..] => {
+            let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+            format!("a folder with several scenes, {}, {}{more}", file_name(first), file_name(second))
+        }
+    };
+    Error::new(folder, found, "a glTF file, or a folder with one", "name a file")
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Error {

@@ -12,6 +12,9 @@ pub(super) struct Chunks<'a> {
 /// Bytes before the first chunk: magic, version, length.
 const HEADER: usize = 12;
 
+/// Bytes before the contents of a chunk: length, type.
+const CHUNK_HEADER: usize = 8;
+
 /// Splits `bytes`, which are JSON unless they start as a container does. Fails with what is wrong with the container.
 pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     if !bytes.starts_with(b"glTF") {
@@ -41,12 +44,13 @@ type Chunk<'a> = (&'a [u8], &'a [u8]);
 
 fn chunks(mut rest: &[u8]) -> Result<Vec<Chunk<'_>>, String> {
     let mut chunks = Vec::new();
-    while !rest.is_empty() {
-        let whole = number(rest, 0).and_then(|length| rest.split_at_checked(length.checked_add(8)?));
+    while rest.len() >= CHUNK_HEADER {
+        let whole =
+            number(rest, 0).and_then(|length| rest.split_at_checked(length.checked_add(CHUNK_HEADER)?));
         let Some((chunk, after)) = whole else {
             return Err(format!("truncated: chunk {} reaches past the end", chunks.len()));
         };
-        chunks.push((&chunk[4..8], &chunk[8..]));
+        chunks.push((&chunk[4..8], &chunk[CHUNK_HEADER..]));
         rest = after;
     }
     Ok(chunks)

@@ -32,6 +32,8 @@ mod repaint;
 mod surfaces;
 mod triangles;
 
+pub use files::{is_gltf, scenes_in};
+
 use document::Document;
 use drafts::{Draft, Settings};
 use equilux_formats::{Instance, LocalSolver, MaterialId, PartId, Repainted, Result, Scene};
