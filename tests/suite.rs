@@ -4,6 +4,7 @@ mod bad_input;
 mod cache;
 mod cli;
 mod crash;
+mod gltf;
 mod lightmaps;
 mod lights;
 mod live;

@@ -1,9 +1,10 @@
 //! Many files baked one after the other; a bad one does not keep the others from being baked.
 
+use crate::gltf_import::{import_scene, is_gltf};
 use crate::monitor::Monitor;
 use crate::oven::{Baked, Oven};
+use crate::prepare::PreparedPart;
 use crate::prepare::{Preparation, prepare};
-use crate::{gltf_import::import_scene, prepare::PreparedPart};
 use equilux_formats::{Error, Result, Rows, Store, Swept};
 use serde::Serialize;
 use std::collections::HashSet;
@@ -120,10 +121,6 @@ pub fn find_scenes(inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
         }
     }
     Ok(files)
-}
-
-fn is_gltf(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
 }
 
 /// Bake every part of every file.

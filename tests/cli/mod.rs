@@ -7,6 +7,8 @@ mod json;
 mod outputs;
 mod plan;
 mod render;
+#[cfg(unix)]
+mod streams;
 mod usage;
 #[cfg(unix)]
 mod watch;

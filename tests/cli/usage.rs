@@ -24,7 +24,46 @@ fn a_folder_with_one_scene_is_that_scene() {
     std::fs::copy(workshop.path("scene.glb"), workshop.path("other.glb")).expect("a second scene");
     let ended = workshop.run("assemble", &[&["."], &options[..]].concat());
     assert_eq!(ended.code, Some(1), "{}", ended.stdout);
-    assert!(ended.stderr.contains("name a file"), "{}", ended.stderr);
+    let message = "error: .: a folder with several scenes, other.glb, scene.glb; ";
+    assert!(ended.stderr.starts_with(message) && ended.stderr.contains("name a file"), "{}", ended.stderr);
+}
+
+#[test]
+fn a_folder_without_a_scene_says_so() {
+    let workshop = Workshop::new();
+    std::fs::create_dir_all(workshop.path("empty/scene.glb")).expect("folders");
+    for command in [&[][..], &["plan"], &["render"], &["classic"], &["sweep"]] {
+        let ended = workshop.run("assemble", &[command, &["empty"]].concat());
+        assert_eq!(ended.code, Some(1), "{command:?}: {}", ended.stderr);
+        let message = "error: empty: a folder without a .gltf or .glb file in it; ";
+        assert!(ended.stderr.starts_with(message), "{command:?}: {}", ended.stderr);
+    }
+}
+
+/// What people write, and what they are told to write instead.
+#[test]
+fn a_slip_gets_a_suggestion() {
+    let workshop = Workshop::with(&square());
+    for (program, arguments, suggestion) in [
+        ("assemble", &["pln"][..], "did you mean `plan`?"),
+        ("assemble", &["pln", "scene.glb"], "did you mean `plan`?"),
+        ("assemble", &["rendr", "scene.glb", "--size", "8x8"], "did you mean `render`?"),
+        ("bake", &["completons", "bash"], "did you mean `completions`?"),
+        ("bake", &["scene.glb", "--element-size", "10cm"], "for 10cm write 0.1"),
+        ("assemble", &["scene.glb", "--element-size", "10mm"], "for 10mm write 0.01"),
+        ("assemble", &["plan", "scene.glb", "--element-size", "2ft"], "for 2ft write 0.6096"),
+        ("assemble", &["classic", "scene.glb", "--element-size", "50cm"], "for 50cm write 0.5"),
+        ("assemble", &["scene.glb", "--lightmaps", "--texel-size", "4 cm"], "for 4 cm write 0.04"),
+        ("assemble", &["scene.glb", "--cut", "x=150cm"], "for x=150cm write x=1.5"),
+        ("assemble", &["render", "scene.glb", "--from", "1m,1.6m,2m", "--to", "0,0,0"], "write 1,1.6,2"),
+        ("bake", &["scene.glb", "--cache-limit", "2"], "write 2GB, 2MB or 2B"),
+        ("assemble", &["scene.glb", "--cache-limit", "1.5"], "write 1.5GB, 1.5MB or 1.5B"),
+    ] {
+        let ended = workshop.run(program, arguments);
+        let what = format!("{program} {arguments:?}: {}", ended.stderr);
+        assert_eq!(ended.code, Some(2), "{what}");
+        assert!(ended.stderr.contains(suggestion), "no '{suggestion}' in {what}");
+    }
 }
 
 #[test]

@@ -101,7 +101,7 @@ fn a_saved_file_is_assembled_again_and_an_error_does_not_end_the_watch() {
     watching.says(&["error: scene.gltf: not glTF"]);
     let two = Model::of(&[Node::of_file("one", "parts/room.glb"), Node::of_file("two", "parts/new.glb")]);
     std::fs::write(workshop.path("scene.gltf"), text(two)).expect("a file");
-    watching.says(&["error: scene.gltf: the reference 'parts/new.glb'"]);
+    watching.says(&["error: scene.gltf: node two with the reference 'parts/new.glb'"]);
     std::fs::copy(workshop.path("parts/room.glb"), workshop.path("parts/new.glb")).expect("a copy");
     watching.says(&["scene.gltf changed: 0 parts baked, "]);
 

@@ -1,6 +1,7 @@
 //! Lights that are no surfaces: closed forms for lamps, suns and skies, what they do to the scene, and what they cost.
 
 mod points;
+mod skies;
 
 use equilux_assemble::gather::average::Piece;
 use equilux_assemble::gather::faces::Plane;
@@ -301,86 +302,4 @@ fn a_texel_under_a_crate_is_dark_and_one_beside_it_is_not() {
     // Half of it lies under the crate.
     let half = light(1.475, 1.2, 0.05);
     assert!(half > 0.0 && half < light(1.51, 1.2, 0.05), "{half} on the crate's edge");
-}
-
-/// An equirectangular picture of 64 × 32 pixels as a file of that ending.
-fn picture(workshop: &Workshop, ending: &str, radiance: impl Fn(DVec3) -> f32) -> std::path::PathBuf {
-    let file = workshop.path("sky").with_extension(ending);
-    let image = image::Rgb32FImage::from_fn(64, 32, |x, y| {
-        let (turn, down) = ((f64::from(x) + 0.5) / 64.0 * 2.0 * PI, (f64::from(y) + 0.5) / 32.0 * PI);
-        // The middle of the picture is −Z, its left and right edge +Z, and +X is to the right of the middle.
-        let to = dvec3(-turn.sin() * down.sin(), down.cos(), turn.cos() * down.sin());
-        image::Rgb([radiance(to); 3])
-    });
-    image.save(&file).expect("a picture");
-    file
-}
-
-#[test]
-fn a_sky_picture_shines_from_where_it_shows_light() {
-    // Two floors back to back, and a wall each way: only what looks to the bright side gets light.
-    let sheet = |u: DVec3, v: DVec3| rectangle(part(grey(0.0, 0.0)), DVec3::ZERO, u, v);
-    let facing = [
-        ("x", sheet(DVec3::Y, DVec3::Z), DVec3::X),
-        ("-x", sheet(DVec3::Z, DVec3::Y), DVec3::NEG_X),
-        ("z", sheet(DVec3::X, DVec3::Y), DVec3::Z),
-        ("-z", sheet(DVec3::Y, DVec3::X), DVec3::NEG_Z),
-        ("y", sheet(DVec3::Z, DVec3::X), DVec3::Y),
-        ("-y", sheet(DVec3::X, DVec3::Z), DVec3::NEG_Y),
-    ];
-    for (ending, towards) in [("exr", DVec3::X), ("hdr", DVec3::NEG_Z), ("exr", DVec3::Y)] {
-        for (name, part, normal) in &facing {
-            let workshop = Workshop::with(&[Node::new(name, part.clone())]);
-            let sky = picture(&workshop, ending, |to| if to.dot(towards) > 0.0 { 1.0 } else { 0.0 });
-            let job = workshop.job(Division::Authored);
-            let table = workshop.path("elements.csv");
-            assembled(&Job { sky: Some(Sky::Picture(sky)), elements: Some(table.clone()), ..job });
-            let found = Table::read(&table).number(0, "H_r");
-            // Half the sky is bright: all of what a surface that looks there sees, none of what one looking away does, and half of
-            // what the others do; pixels and cells are a few degrees wide.
-            let expected = PI * (1.0 + normal.dot(towards)) / 2.0;
-            assert!(
-                (found - expected).abs() <= 0.03 * PI,
-                "{found} facing {name} under {ending} bright at {towards}, expected {expected}"
-            );
-        }
-    }
-}
-
-#[test]
-fn a_sky_does_not_turn_with_the_scene() {
-    // One file, turned as a whole: nothing moves as its parts see each other, and the cache holds what it was before.
-    let workshop = Workshop::new();
-    let sky = picture(&workshop, "exr", |to| if to.x > 0.0 { 1.0 } else { 0.0 });
-    let job = workshop.job(Division::Authored);
-    let table = workshop.path("elements.csv");
-    let job = Job { sky: Some(Sky::Picture(sky)), elements: Some(table.clone()), ..job };
-    let sheet = rectangle(part(grey(0.0, 0.0)), DVec3::ZERO, DVec3::Y, DVec3::Z);
-    // Half a turn about y makes what looked to +x look to −x.
-    for (rotation, expected) in
-        [([0.0, 0.0, 0.0, 1.0], PI), ([0.0, 1.0, 0.0, 0.0], 0.0), ([0.0, 0.0, 0.0, 1.0], PI)]
-    {
-        let turned = Model::of(&[Node::new("sheet", sheet.clone())]);
-        turned.with("/nodes/0/rotation", serde_json::json!(rotation)).write(&job.scene);
-        assembled(&job);
-        let found = Table::read(&table).number(0, "H_r");
-        assert!((found - expected).abs() <= 0.03 * PI, "{found} turned by {rotation:?}, expected {expected}");
-    }
-}
-
-#[test]
-fn skies_that_cannot_be_are_named_before_any_work() {
-    let workshop = Workshop::with(&[Node::new("floor", floor())]);
-    std::fs::write(workshop.path("broken.hdr"), "no picture").expect("a file");
-    for (sky, code, says) in [
-        ("nothing.exr", 1, "nothing.exr"),
-        ("broken.hdr", 1, "broken.hdr"),
-        ("-1", 2, "sky"),
-        ("1,2", 2, "sky"),
-    ] {
-        let ended = workshop.run("assemble", &["scene.glb", &format!("--sky={sky}")]);
-        assert_eq!(ended.code, Some(code), "{sky}: {}", ended.stderr);
-        assert!(ended.stderr.contains(says), "{sky}: {}", ended.stderr);
-    }
-    assert!(!workshop.path(".equilux").exists(), "nothing is baked under a sky that cannot be");
 }

@@ -7,6 +7,7 @@ use crate::observer::{Observer, Unobserved};
 use crate::report::Report;
 use crate::run::{Job, run_observed};
 use crate::watch::watch;
+use equilux_bake::cli::program::{Unprinted, print, tell};
 use equilux_bake::cli::progress;
 use equilux_bake::monitor::Monitor;
 use std::sync::Arc;
@@ -30,8 +31,11 @@ pub fn once(wish: &Wish, text: impl Fn(&Report) -> String) -> anyhow::Result<Str
     let report = assemble(wish, &monitor, live.as_ref())?;
     let text = said(wish.json, &report, text);
     let Some(live) = live.filter(|_| !monitor.stopped()) else { return Ok(text) };
-    print!("{text}");
-    eprintln!("all is written; the page stays at {} until Ctrl-C, or until it is closed there", live.url());
+    print(&text)?;
+    tell(format_args!(
+        "all is written; the page stays at {} until Ctrl-C, or until it is closed there",
+        live.url()
+    ));
     live.stay();
     Ok(String::new())
 }
@@ -40,22 +44,26 @@ pub fn once(wish: &Wish, text: impl Fn(&Report) -> String) -> anyhow::Result<Str
 pub fn watched(wish: &Wish) -> anyhow::Result<String> {
     let monitor = progress::monitor_for_program();
     let live = wish.live.map(|port| serve(port, true, &monitor)).transpose()?;
-    let mut last_notes = Vec::new();
+    let (mut last_notes, mut printed) = (Vec::new(), Ok::<(), Unprinted>(()));
     watch(&wish.job.scene, &wish.job.beside().collect::<Vec<_>>(), &monitor, |why| {
         match assemble(wish, &monitor, live.as_ref()) {
             Ok(report) => {
-                print!("{}", said(wish.json, &report, |report| short(why, report, &last_notes)));
+                printed = print(&said(wish.json, &report, |report| short(why, report, &last_notes)));
+                if printed.is_err() {
+                    monitor.stop();
+                }
                 last_notes = report.notes;
             }
-            Err(error) => eprintln!("error: {error:#}"),
+            Err(error) => tell(format_args!("error: {error:#}")),
         }
     })?;
+    printed?;
     Ok(String::new())
 }
 
 fn serve(port: u16, watched: bool, monitor: &Arc<Monitor>) -> anyhow::Result<Live> {
     let live = Live::start(port, watched, monitor)?;
-    eprintln!("live page: {}", live.url());
+    tell(format_args!("live page: {}", live.url()));
     Ok(live)
 }
 

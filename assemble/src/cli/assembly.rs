@@ -45,7 +45,7 @@ pub struct Assembly {
     #[arg(long, value_name = "WHICH", default_value = "rounds")]
     pictures: Drawn,
     /// What shines from all around: a radiance in W/(m² sr), one number or R,G,B, or an equirectangular picture,
-    /// .hdr or .exr, whose middle is -Z and top +Y
+    /// .hdr or .exr, whose middle is -Z, right of that +X, and top +Y
     #[arg(long, value_name = "RADIANCE|FILE", value_parser = values::sky)]
     sky: Option<Sky>,
     /// What the intensities of the file's lights mean

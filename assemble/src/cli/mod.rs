@@ -12,9 +12,9 @@ use crate::run::Job;
 use crate::sweep;
 use assembling::{Wish, once, watched};
 use assembly::Assembly;
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use clap_complete::Shell;
-use equilux_bake::cli::progress;
+use equilux_bake::cli::{program, progress};
 use equilux_bake::monitor::Monitor;
 use render::Render;
 use serde::Serialize;
@@ -78,18 +78,12 @@ Examples:
   assemble completions bash > /etc/bash_completion.d/assemble
 Ctrl-C ends the exchange after the current round; everything is still written. Later it ends lightmaps, and\nonly they are not. A second one ends the program at once.";
 
-/// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
+/// Run the program.
 pub fn main() -> ExitCode {
-    match run(Arguments::parse()) {
-        Ok(text) => {
-            print!("{text}");
-            ExitCode::SUCCESS
-        }
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    program::run(|arguments| {
+        program::print(&run(arguments)?)?;
+        Ok(ExitCode::SUCCESS)
+    })
 }
 
 /// Do what is asked for; returns what is left to print.
@@ -114,10 +108,7 @@ fn run(arguments: Arguments) -> anyhow::Result<String> {
             let report = shown(|monitor| arguments.run(monitor))?;
             Ok(said(arguments.json, &report, baseline::Report::text))
         }
-        Some(Task::Completions { shell }) => {
-            clap_complete::generate(shell, &mut Arguments::command(), "assemble", &mut std::io::stdout());
-            Ok(String::new())
-        }
+        Some(Task::Completions { shell }) => Ok(program::completions::<Arguments>(shell, "assemble")),
     }
 }
 

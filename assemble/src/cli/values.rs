@@ -2,9 +2,11 @@
 
 use crate::gather::sky::Sky;
 use crate::proof::sample::ExactRows;
+use equilux_bake::cli::length::in_metres;
+use equilux_bake::gltf_import::scenes_in;
 use glam::DVec3;
 use std::convert::Infallible;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 pub fn exact_rows(text: &str) -> Result<ExactRows, String> {
     match text.parse() {
@@ -39,7 +41,10 @@ pub fn point(text: &str) -> Result<DVec3, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers.as_deref() {
         Some(&[x, y, z]) if [x, y, z].iter().all(|v| v.is_finite()) => Ok(DVec3::new(x, y, z)),
-        _ => Err("a point is three numbers with commas between them, metres, such as 1,1.6,-2".into()),
+        _ => Err(format!(
+            "a point is three numbers with commas between them, metres, such as 1,1.6,-2{}",
+            in_metres(text)
+        )),
     }
 }
 
@@ -70,7 +75,7 @@ pub fn stops(text: &str) -> Result<f64, String> {
 pub fn texel_size(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
-        _ => Err("a texel size is a length above zero, metres".into()),
+        _ => Err(format!("a texel size is a number of metres above zero{}", in_metres(text))),
     }
 }
 
@@ -83,11 +88,8 @@ pub fn error_bound(text: &str) -> Result<f64, String> {
 
 /// A scene's file; of a folder with one such file, that.
 pub fn scene(text: &str) -> Result<PathBuf, Infallible> {
-    let is_scene = |path: &PathBuf| path.extension().is_some_and(|kind| kind == "gltf" || kind == "glb");
-    let files = std::fs::read_dir(text).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut scenes = files.filter(is_scene);
-    match (scenes.next(), scenes.next()) {
-        (Some(only), None) => Ok(only),
+    match &scenes_in(Path::new(text))[..] {
+        [only] => Ok(only.clone()),
         _ => Ok(text.into()),
     }
 }

@@ -6,6 +6,8 @@ use equilux_bake::clusters::hierarchy;
 use equilux_bake::keys::SKY_CELLS;
 use equilux_formats::{Corners, Element, Error, Face, FaceId, Geometry, MaterialId, Result, Rgb};
 use glam::DVec3;
+use image::codecs::hdr::HdrDecoder;
+use image::{DynamicImage, ImageFormat, ImageReader, ImageResult};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use std::path::{Path, PathBuf};
 
@@ -14,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub enum Sky {
     /// The same radiance everywhere, W/(m² sr).
     Uniform(Rgb),
-    /// An equirectangular picture of radiances, .hdr or .exr: its middle is −Z, its top +Y.
+    /// An equirectangular picture of radiances, .hdr or .exr: its middle is −Z, right of that is +X, its top is +Y.
     Picture(PathBuf),
 }
 
@@ -84,6 +86,16 @@ impl Radiances {
     }
 }
 
+/// The picture in `file`. A Radiance file begins with `#?RADIANCE` or, from many programs, with `#?RGBE`, of which the strict
+/// decoder knows only the first.
+fn open(file: &Path) -> ImageResult<DynamicImage> {
+    let reader = ImageReader::open(file)?.with_guessed_format()?;
+    match reader.format() {
+        Some(ImageFormat::Hdr) => DynamicImage::from_decoder(HdrDecoder::new_nonstrict(reader.into_inner())?),
+        _ => reader.decode(),
+    }
+}
+
 /// Radiances by direction.
 pub struct Picture {
     width: usize,
@@ -95,8 +107,7 @@ impl Picture {
     fn read(file: &Path) -> Result<Self> {
         let expected = "an equirectangular picture, .hdr or .exr, with finite numbers of 0 or more";
         let wrong = |found: String| Error::new(file, found, expected, "convert the picture, or give another");
-        let image =
-            image::open(file).map_err(|error| wrong(format!("could not be read ({error})")))?.into_rgb32f();
+        let image = open(file).map_err(|error| wrong(format!("could not be read ({error})")))?.into_rgb32f();
         let pixels: Vec<[f32; 3]> = image.pixels().map(|pixel| pixel.0).collect();
         if pixels.iter().flatten().any(|l| !l.is_finite() || *l < 0.0) {
             return Err(wrong("a pixel that is negative or no number".into()));

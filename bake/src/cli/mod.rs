@@ -1,6 +1,8 @@
 //! The command line of `bake`, and the options that `assemble` shares with it.
 
+pub mod length;
 pub mod options;
+pub mod program;
 pub mod progress;
 
 mod size;
@@ -9,11 +11,12 @@ use crate::batch::{Batch, PartOutcome, bake_files, find_scenes};
 use crate::keys::drop_unused;
 use crate::monitor::Monitor;
 use crate::{depfile, stamp};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 use equilux_formats::{Store, Swept};
 use indicatif::DecimalBytes;
 use options::SceneOptions;
+use program::tell;
 use serde::Serialize;
 use size::count;
 use std::path::{Path, PathBuf};
@@ -64,27 +67,23 @@ Examples:
   bake scenes/house --stamp house.stamp --depfile house.d
   bake scenes/house scenes/cornell --gc --cache .equilux";
 
-/// Run the program: 0 done, 1 something is wrong with an input or the environment, 2 the command line is.
+/// Run the program.
 pub fn main() -> ExitCode {
-    let arguments = Arguments::parse();
+    program::run(work)
+}
+
+fn work(arguments: Arguments) -> anyhow::Result<ExitCode> {
     if let Some(Task::Completions { shell }) = arguments.command {
-        clap_complete::generate(shell, &mut Arguments::command(), "bake", &mut std::io::stdout());
-        return ExitCode::SUCCESS;
+        program::print(&program::completions::<Arguments>(shell, "bake"))?;
+        return Ok(ExitCode::SUCCESS);
     }
     let monitor = progress::monitor_for_program();
     let progress = progress::show(&monitor);
     let outcome = run(&arguments, &monitor);
     progress.finish();
-    match outcome {
-        Ok(done) => {
-            print(&arguments, &done);
-            ExitCode::from(u8::from(matches!(&done, Done::Baked(batch) if batch.failed())))
-        }
-        Err(error) => {
-            eprintln!("error: {error:#}");
-            ExitCode::FAILURE
-        }
-    }
+    let done = outcome?;
+    print(&arguments, &done)?;
+    Ok(ExitCode::from(u8::from(matches!(&done, Done::Baked(batch) if batch.failed()))))
 }
 
 /// What was asked for and done.
@@ -115,64 +114,62 @@ fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Done> {
     Ok(Done::Baked(batch))
 }
 
-fn print(arguments: &Arguments, done: &Done) {
+fn print(arguments: &Arguments, done: &Done) -> Result<(), program::Unprinted> {
     if let Done::Baked(batch) = done {
         print_problems(batch, !arguments.options.json);
     }
-    match done {
-        done if arguments.options.json => {
-            println!("{}", serde_json::to_string(done).expect("a batch is plain data"));
-        }
-        Done::Baked(batch) => print_batch(arguments, batch),
-        Done::Swept(swept) => println!("{}", swept_line(&arguments.options.cache, swept)),
-    }
+    program::print(&match done {
+        done if arguments.options.json => serde_json::to_string(done).expect("a batch is plain data") + "\n",
+        Done::Baked(batch) => batch_text(arguments, batch),
+        Done::Swept(swept) => swept_line(&arguments.options.cache, swept),
+    })
 }
 
 fn print_problems(batch: &Batch, with_notes: bool) {
     for file in &batch.files {
         if let Some(error) = &file.error {
-            eprintln!("error: {error}");
+            tell(format_args!("error: {error}"));
         }
         if with_notes {
-            file.notes.iter().for_each(|note| eprintln!("note: {note}"));
+            file.notes.iter().for_each(|note| tell(format_args!("note: {note}")));
         }
     }
 }
 
-fn print_batch(arguments: &Arguments, batch: &Batch) {
-    let cache = &arguments.options.cache;
+fn batch_text(arguments: &Arguments, batch: &Batch) -> String {
+    let (cache, mut text) = (&arguments.options.cache, String::new());
     for file in &batch.files {
         for part in &file.parts {
-            println!("{}", line(&file.file, part));
+            text += &line(&file.file, part);
             if arguments.explain {
-                println!("    form factors {}", part.form_factors_reason);
-                println!("    light {}", part.light_reason);
+                text += &format!("    form factors {}\n", part.form_factors_reason);
+                text += &format!("    light {}\n", part.light_reason);
             }
         }
     }
     if let Some(swept) = &batch.swept {
-        println!("{}", swept_line(cache, swept));
+        text += &swept_line(cache, swept);
     }
-    println!(
-        "{} in {}: {} baked, {} reused; {:.2} s; cache {}",
+    text + &format!(
+        "{} in {}: {} baked, {} reused; {:.2} s; cache {}\n",
         count(batch.parts(), "part"),
         count(batch.files.len(), "file"),
         batch.baked(),
         batch.parts() - batch.baked(),
         batch.seconds,
         cache.display()
-    );
+    )
 }
 
 fn swept_line(cache: &Path, swept: &Swept) -> String {
     let [dropped, kept] = [swept.dropped, swept.kept]
         .map(|tally| format!("{} ({})", count(tally.files, "file"), DecimalBytes(tally.bytes)));
-    format!("cache {}: dropped {dropped}, kept {kept}", cache.display())
+    format!("cache {}: dropped {dropped}, kept {kept}\n", cache.display())
 }
 
 fn line(file: &str, part: &PartOutcome) -> String {
     format!(
-        "{file}: {}: {} elements ({}), {} form factors, row sums at most {:.1e} from 1, {}",
+        "{file}: {}: {} elements ({}), {} form factors, row sums at most {:.1e} from 1, {}\n",
         part.name,
         part.elements,
         part.element_size,

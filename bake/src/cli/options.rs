@@ -1,5 +1,6 @@
 //! Options that both programs understand.
 
+use super::length::in_metres;
 use crate::bisect::Cut;
 use crate::elements::ElementSize;
 use crate::prepare::{Division, Preparation};
@@ -29,7 +30,7 @@ pub struct SceneOptions {
     #[arg(long, value_name = "N", conflicts_with = "cut", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub bisect: Option<u32>,
     /// Make parts by this plane, such as x=1.5; may be given several times
-    #[arg(long, value_name = "AXIS=METRES")]
+    #[arg(long, value_name = "AXIS=METRES", value_parser = cut)]
     pub cut: Vec<Cut>,
     /// Who solves a part's own equilibrium [default: direct for small parts, iterative for large]
     #[arg(long, value_name = "SOLVER")]
@@ -99,8 +100,12 @@ pub fn element_size(text: &str) -> Result<ElementSize, String> {
     }
     match text.parse::<f64>() {
         Ok(size) if size > 0.0 && size.is_finite() => Ok(ElementSize::Metres(size)),
-        _ => Err("an element size is a number of metres above zero, or `mesh`".into()),
+        _ => Err(format!("an element size is a number of metres above zero, or `mesh`{}", in_metres(text))),
     }
+}
+
+fn cut(text: &str) -> Result<Cut, String> {
+    text.parse().map_err(|error| format!("{error}{}", in_metres(text)))
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -1,8 +1,7 @@
 //! Sizes and counts as people write and read them: `2GB`, `512 MiB`, `1 file`.
 
 /// Units and how many bytes they are, for comparison without case.
-const UNITS: [(&str, f64); 9] = [
-    ("", 1.0),
+const UNITS: [(&str, f64); 8] = [
     ("b", 1.0),
     ("kb", 1e3),
     ("mb", 1e6),
@@ -17,10 +16,15 @@ const UNITS: [(&str, f64); 9] = [
 pub fn parse(text: &str) -> Result<u64, String> {
     let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let (number, unit) = text.split_at(unit_at);
+    if unit.is_empty() && number.trim().parse::<f64>().is_ok_and(|number| number > 0.0) {
+        return Err(format!("a size has a unit: write {0}GB, {0}MB or {0}B", number.trim()));
+    }
+    // No bytes are none in any unit.
+    let unit = if unit.is_empty() { "b" } else { unit };
     let scale = UNITS.iter().find(|(name, _)| unit.eq_ignore_ascii_case(name)).map(|(_, scale)| scale);
     match (number.trim().parse::<f64>(), scale) {
         (Ok(number), Some(scale)) if number >= 0.0 && number.is_finite() => Ok((number * scale) as u64),
-        _ => Err("a size is a number of bytes, or of kB, MB, GB, TB, KiB, MiB or GiB, such as 2GB".into()),
+        _ => Err("a size is a number of B, kB, MB, GB, TB, KiB, MiB or GiB, such as 2GB".into()),
     }
 }
 
@@ -39,8 +43,9 @@ mod tests {
         for (text, bytes) in sizes {
             assert_eq!(parse(text), Ok(bytes), "{text}");
         }
-        for text in ["", "GB", "-1", "2 XB", "nan", "inf", "1e400", "1 2"] {
+        for text in ["", "GB", "-1", "2", "1e9", "-1B", "2 XB", "nan", "inf", "1e400", "1 2"] {
             assert!(parse(text).is_err(), "{text}: {:?}", parse(text));
         }
+        assert!(parse("2").is_err_and(|message| message.contains("2GB")), "{:?}", parse("2"));
     }
 }

@@ -1,5 +1,5 @@
-//! Numbers out of buffers: in goes an accessor, out come its components as f64, whatever their type, stride,
-//! normalisation or sparseness. Own code, as the gltf crate's readers panic on quantised positions and on sparse data
+//! Numbers out of buffers: the components of an accessor as f64, whatever their type, stride, normalisation or
+//! sparseness. Own code, as the gltf crate's readers panic on quantised positions and on sparse data
 //! that ends early. glTF 2.0 specification, §3.6.2.
 
 use super::document::Document;
@@ -7,6 +7,7 @@ use equilux_formats::{Error, Result};
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::View;
+use gltf::json::validation::Checked;
 
 /// No accessor has more elements; one without a buffer view could state any count at no cost.
 const MOST_ELEMENTS: usize = 1 << 26;
@@ -38,19 +39,30 @@ pub(super) fn check_type(
     dimensions: Dimensions,
     types: &[DataType],
 ) -> Result<()> {
-    if accessor.dimensions() == dimensions && types.contains(&accessor.data_type()) {
+    // From the JSON, as the crate panics on types that it does not know.
+    let json = &document.gltf.as_json().accessors[accessor.index()];
+    let (component, kind) = (known(&json.component_type), known(&json.type_));
+    if kind == Some(dimensions) && component.is_some_and(|component| types.contains(&component.0)) {
         return Ok(());
     }
+    let name = |known: Option<String>| known.unwrap_or_else(|| "an unknown type".to_owned());
     Err(document.error(
         format!(
-            "{what} in accessor {} as {:?} of {:?}",
+            "{what} in accessor {} as {} of {}",
             accessor.index(),
-            accessor.dimensions(),
-            accessor.data_type()
+            name(kind.map(|kind| format!("{kind:?}"))),
+            name(component.map(|component| format!("{:?}", component.0))),
         ),
         format!("{dimensions:?} of {types:?}"),
         "export the file again",
     ))
+}
+
+fn known<T: Copy>(checked: &Checked<T>) -> Option<T> {
+    match checked {
+        Checked::Valid(value) => Some(*value),
+        Checked::Invalid => None,
+    }
 }
 
 /// How an element lies in memory.
@@ -133,14 +145,10 @@ impl Reader<'_> {
             _ => stride.checked_mul(count - 1).and_then(|length| length.checked_add(size)),
         };
         let end = length.and_then(|length| length.checked_add(offset));
-        let buffer = &self.document.buffers[view.buffer().index()];
-        let held = view.offset().checked_add(view.length()).and_then(|end| buffer.get(view.offset()..end));
-        let held = held.ok_or_else(|| {
-            self.error(
-                format!("buffer view {} reaches past its buffer", view.index()),
-                format!("a view within the buffer's {} bytes", buffer.len()),
-            )
-        })?;
+        let held = self
+            .document
+            .buffers
+            .view(view, &format!("{} in accessor {}", self.what, self.accessor.index()))?;
         end.and_then(|end| held.get(offset..end)).map(|bytes| (bytes, stride)).ok_or_else(|| {
             self.error(
                 format!(

@@ -1,21 +1,39 @@
 //! The bytes behind a glTF file: its binary chunk, `data:` URIs, and files beside it.
 
 use super::files::Files;
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
+use data_url::DataUrl;
 use equilux_formats::{Error, Result};
-use gltf::buffer::Source;
+use gltf::buffer::{Source, View};
 use percent_encoding::percent_decode_str;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// The bytes of every buffer of `gltf`, each as long as its `byteLength` says.
-pub(super) fn read_buffers(
-    files: &mut Files,
-    path: &Path,
-    gltf: &gltf::Document,
-    binary: Option<&[u8]>,
-) -> Result<Vec<Vec<u8>>> {
-    gltf.buffers().map(|buffer| read_buffer(files, path, &buffer, binary)).collect()
+/// The buffers of a file. A buffer that cannot be read is an error where it is used: extensions may fill in buffers that
+/// nothing here looks at.
+pub(super) struct Buffers {
+    path: PathBuf,
+    buffers: Vec<Result<Vec<u8>>>,
+}
+
+impl Buffers {
+    /// Those of `gltf`, the file at `path`, each as long as its `byteLength` says.
+    pub(super) fn read(files: &mut Files, path: &Path, gltf: &gltf::Document, binary: Option<&[u8]>) -> Self {
+        let buffers = gltf.buffers().map(|buffer| read_buffer(files, path, &buffer, binary));
+        Self { path: path.to_path_buf(), buffers: buffers.collect() }
+    }
+
+    /// The bytes of `view`. `what` says in errors what for.
+    pub(super) fn view(&self, view: &View, what: &str) -> Result<&[u8]> {
+        let buffer = self.buffers[view.buffer().index()].as_ref().map_err(Error::clone)?;
+        let end = view.offset().checked_add(view.length());
+        end.and_then(|end| buffer.get(view.offset()..end)).ok_or_else(|| {
+            Error::new(
+                &self.path,
+                format!("{what}: buffer view {} reaches past its buffer", view.index()),
+                format!("a view within the buffer's {} bytes", buffer.len()),
+                "export the file again, it contradicts itself or is truncated",
+            )
+        })
+    }
 }
 
 fn read_buffer(
@@ -47,25 +65,26 @@ fn read_buffer(
     Ok(bytes)
 }
 
-/// What `uri` in the file at `path` means: data, or another file. `what` says in errors what for.
+/// The bytes that `uri` in the file at `path` stands for: data, or another file. `what` says in errors what for.
 pub(super) fn uri_bytes(files: &mut Files, path: &Path, uri: &str, what: &str) -> Result<Vec<u8>> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return decode(path, what, data);
+    if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+        return decode(uri).map_err(|why| {
+            Error::new(
+                path,
+                format!("{what} with a data URI that {why}"),
+                "data:…;base64,… or percent-encoded bytes",
+                "export the file again",
+            )
+        });
     }
     let uri = percent_decode_str(uri).decode_utf8_lossy();
-    let file = files.resolve(path, &uri)?;
-    files.read(&file)
+    let file = files.resolve(path, &uri, what)?;
+    files.read_referenced(path, &file, what)
 }
 
-fn decode(path: &Path, what: &str, data: &str) -> Result<Vec<u8>> {
-    let broken = |why: String| {
-        Error::new(
-            path,
-            format!("{what} with a data URI that {why}"),
-            "data:…;base64,…",
-            "export the file again",
-        )
-    };
-    let (_, encoded) = data.split_once(";base64,").ok_or_else(|| broken("is not base64".to_owned()))?;
-    BASE64_STANDARD.decode(encoded).map_err(|error| broken(format!("cannot be decoded as base64 ({error})")))
+/// The bytes of a `data:` URI, base64 or percent-encoded (RFC 2397).
+fn decode(uri: &str) -> std::result::Result<Vec<u8>, String> {
+    let url = DataUrl::process(uri).map_err(|error| format!("is malformed ({error})"))?;
+    let (bytes, _) = url.decode_to_vec().map_err(|error| format!("cannot be decoded as base64 ({error})"))?;
+    Ok(bytes)
 }

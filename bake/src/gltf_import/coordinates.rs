@@ -1,5 +1,5 @@
-//! Vertex attributes that colour a primitive: in go its accessors, out come places in textures, transformed as
-//! KHR_texture_transform asks, and vertex colours.
+//! Vertex attributes that colour a primitive: places in textures, transformed as KHR_texture_transform asks, and vertex
+//! colours.
 
 use super::accessors::{check_type, components};
 use super::document::Document;
@@ -70,7 +70,9 @@ pub(super) fn texture_coordinates(
 ) -> Result<Option<Vec<DVec2>>> {
     let what = format!("TEXCOORD_{set} of mesh {mesh}");
     let Some(accessor) = primitive.get(&Semantic::TexCoords(set)) else { return Ok(None) };
-    check_type(document, &accessor, &what, Dimensions::Vec2, &[DataType::F32, DataType::U8, DataType::U16])?;
+    // Signed integers are allowed by KHR_mesh_quantization.
+    let types = [DataType::F32, DataType::I8, DataType::U8, DataType::I16, DataType::U16];
+    check_type(document, &accessor, &what, Dimensions::Vec2, &types)?;
     check_count(document, &accessor, &what, vertices)?;
     Ok(Some(components(document, &accessor, &what)?.chunks_exact(2).map(DVec2::from_slice).collect()))
 }
@@ -84,11 +86,12 @@ pub(super) fn vertex_colours(
 ) -> Result<Option<Vec<Rgb>>> {
     let what = format!("COLOR_0 of mesh {mesh}");
     let Some(accessor) = primitive.get(&Semantic::Colors(0)) else { return Ok(None) };
-    let dimensions = match accessor.dimensions() {
-        Dimensions::Vec3 => Dimensions::Vec3,
-        _ => Dimensions::Vec4,
+    let types = [DataType::F32, DataType::U8, DataType::U16];
+    let dimensions = match check_type(document, &accessor, &what, Dimensions::Vec3, &types) {
+        Ok(()) => Dimensions::Vec3,
+        Err(_) => Dimensions::Vec4,
     };
-    check_type(document, &accessor, &what, dimensions, &[DataType::F32, DataType::U8, DataType::U16])?;
+    check_type(document, &accessor, &what, dimensions, &types)?;
     check_count(document, &accessor, &what, vertices)?;
     let values = components(document, &accessor, &what)?;
     if values.iter().any(|value| value.is_nan()) {

@@ -1,23 +1,29 @@
-//! One glTF file as parsed and validated JSON with all its buffers in memory. In goes a `.gltf` or `.glb` file, out
-//! comes a [`Document`] in which every index between JSON objects is valid; nothing is known yet about the bytes.
+//! One glTF file as parsed and validated JSON with all its buffers in memory. Reads a `.gltf` or `.glb` file into a
+//! [`Document`] in which every index between JSON objects is valid; nothing is known yet about the bytes.
 
-use super::buffers::read_buffers;
+use super::buffers::Buffers;
 use super::files::Files;
+use super::glb::{Chunks, split};
 use super::images::read_images;
 use super::instancing::INSTANCING;
+use super::normal_form::{SPECULAR_GLOSSINESS, WEBP, normalise};
 use super::notes::Notes;
 use equilux_formats::{Error, Result};
 use gltf::json;
+use gltf::json::validation::{Error as Fault, Validate};
 use image::RgbaImage;
 use serde::Deserialize;
+use serde_json::Value;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 /// Extensions a file may require.
-const SUPPORTED: [&str; 6] = [
+const SUPPORTED: [&str; 8] = [
     INSTANCING,
+    WEBP,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
+    SPECULAR_GLOSSINESS,
     "KHR_materials_unlit",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
@@ -29,8 +35,8 @@ pub(super) struct Document {
     pub(super) path: PathBuf,
     /// Its JSON.
     pub(super) gltf: gltf::Document,
-    /// The bytes of its buffers, each as long as the JSON says.
-    pub(super) buffers: Vec<Vec<u8>>,
+    /// The bytes of its buffers.
+    pub(super) buffers: Buffers,
     /// Those of its images that colour what is baked.
     pub(super) images: HashMap<usize, RgbaImage>,
 }
@@ -39,12 +45,16 @@ impl Document {
     /// Reads `path`, its buffers and its images. What the file holds but nobody here uses is noted.
     pub(super) fn read(files: &mut Files, path: &Path, notes: &mut Notes) -> Result<Self> {
         let bytes = files.read(path)?;
-        let (json, binary) = split(path, &bytes)?;
+        let Chunks { json, binary } = split(&bytes).map_err(|why| not_gltf(path, why))?;
+        let mut json: Value = serde_json::from_slice(json).map_err(|error| not_gltf(path, error))?;
         check_preamble(path, &json, notes)?;
-        let gltf = parse(path, &json)?;
-        note_unused(path, &gltf, notes);
-        let buffers = read_buffers(files, path, &gltf, binary.as_deref())?;
-        let images = read_images(files, path, &gltf, &buffers)?;
+        normalise(&mut json, &file_name(path), notes);
+        let gltf = parse(path, json)?;
+        if gltf.scenes().len() > 1 {
+            notes.add(file_name(path), "of its several scenes only the default one (else the first) is read");
+        }
+        let buffers = Buffers::read(files, path, &gltf, binary);
+        let images = read_images(files, path, &gltf, &buffers, notes)?;
         Ok(Self { path: path.to_path_buf(), gltf, buffers, images })
     }
 
@@ -73,29 +83,6 @@ fn not_gltf(path: &Path, why: impl std::fmt::Display) -> Error {
     )
 }
 
-type Chunks<'a> = (std::borrow::Cow<'a, [u8]>, Option<std::borrow::Cow<'a, [u8]>>);
-
-/// The JSON and, in a `.glb`, the binary chunk.
-fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<Chunks<'a>> {
-    if !bytes.starts_with(b"glTF") {
-        return Ok((bytes.into(), None));
-    }
-    // The crate subtracts the header from the stated length unchecked.
-    let stated = bytes.get(8..12).map(|length| u32::from_le_bytes(length.try_into().expect("4 bytes")));
-    match stated {
-        Some(length) if length >= 12 && length as usize <= bytes.len() => {}
-        _ => {
-            let stated = stated.map_or("at least 12".to_owned(), |length| length.to_string());
-            return Err(not_gltf(
-                path,
-                format!("truncated: {} bytes, its header says {stated}", bytes.len()),
-            ));
-        }
-    }
-    let container = gltf::Glb::from_slice(bytes).map_err(|error| not_gltf(path, error))?;
-    Ok((container.json, container.bin))
-}
-
 /// What must be known before the JSON is read at large, as a newer version or a required extension may change the rest.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -108,14 +95,20 @@ struct Preamble {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
 struct Asset {
     version: String,
+    min_version: Option<String>,
 }
 
-fn check_preamble(path: &Path, json: &[u8], notes: &mut Notes) -> Result<()> {
-    let preamble: Preamble = serde_json::from_slice(json).map_err(|error| not_gltf(path, error))?;
-    if !preamble.asset.version.starts_with("2.") {
-        return Err(not_gltf(path, format!("asset.version is '{}'", preamble.asset.version)));
+fn check_preamble(path: &Path, json: &Value, notes: &mut Notes) -> Result<()> {
+    let preamble = Preamble::deserialize(json).map_err(|error| not_gltf(path, error))?;
+    let Asset { version, min_version } = preamble.asset;
+    if !version.starts_with("2.") {
+        return Err(not_gltf(path, format!("asset.version is '{version}'")));
+    }
+    if let Some(least) = min_version.filter(|least| least != "2.0") {
+        return Err(not_gltf(path, format!("asset.minVersion is '{least}', this build reads 2.0")));
     }
     let unknown = |extension: &&String| !SUPPORTED.contains(&extension.as_str());
     if let Some(extension) = preamble.extensions_required.iter().find(unknown) {
@@ -132,15 +125,22 @@ fn check_preamble(path: &Path, json: &[u8], notes: &mut Notes) -> Result<()> {
     Ok(())
 }
 
-fn parse(path: &Path, json: &[u8]) -> Result<gltf::Document> {
-    let mut root: json::Root = json::deserialize::from_slice(json).map_err(|error| not_gltf(path, error))?;
+fn parse(path: &Path, json: Value) -> Result<gltf::Document> {
+    let mut root: json::Root = serde_json::from_value(json).map_err(|error| not_gltf(path, error))?;
     // Checked above; the crate's own list lacks extensions that need no code of its.
     root.extensions_required.clear();
     settle_bounds(path, &mut root)?;
-    gltf::Document::from_json(root).map_err(|error| match error {
-        gltf::Error::Validation(problems) => not_gltf(path, first_of(&problems)),
-        other => not_gltf(path, other),
-    })
+    let mut faults = Vec::new();
+    root.validate(&root, json::Path::new, &mut |place, fault| {
+        let place = place();
+        if !is_legal(place.as_str(), fault) {
+            faults.push((place, fault));
+        }
+    });
+    match first_of(&faults) {
+        Some(fault) => Err(not_gltf(path, fault)),
+        None => Ok(gltf::Document::from_json_without_validation(root)),
+    }
 }
 
 /// Gives every POSITION accessor bounds: they are not used here, but the crate refuses files without them. It also
@@ -159,23 +159,22 @@ fn settle_bounds(path: &Path, root: &mut json::Root) -> Result<()> {
     Ok(())
 }
 
-fn first_of(problems: &[(json::Path, json::validation::Error)]) -> String {
-    match problems {
-        [(place, problem)] => format!("{place}: {problem}"),
-        [(place, problem), rest @ ..] => format!("{place}: {problem}, and {} more faults", rest.len()),
-        [] => "invalid".to_owned(),
-    }
+/// Whether the crate finds a fault in what the specification allows: an accessor without a buffer view holds zeros
+/// (§3.6.2.1), and one of an unknown type is only a fault where it is used, which is checked there.
+fn is_legal(place: &str, fault: Fault) -> bool {
+    let member =
+        place.strip_prefix("accessors[").and_then(|place| place.split_once("].")).map(|(_, member)| member);
+    matches!(
+        (member, fault),
+        (Some("bufferView"), Fault::Missing) | (Some("componentType" | "type"), Fault::Invalid)
+    )
 }
 
-fn note_unused(path: &Path, gltf: &gltf::Document, notes: &mut Notes) {
-    if gltf.animations().len() > 0 {
-        notes.add(file_name(path), "animations are ignored");
-    }
-    if gltf.skins().len() > 0 {
-        notes.add(file_name(path), "skins are ignored, meshes stand as modelled");
-    }
-    if gltf.scenes().len() > 1 {
-        notes.add(file_name(path), "of its several scenes only the default one (else the first) is read");
+fn first_of(faults: &[(json::Path, Fault)]) -> Option<String> {
+    match faults {
+        [] => None,
+        [(place, fault)] => Some(format!("{place}: {fault}")),
+        [(place, fault), rest @ ..] => Some(format!("{place}: {fault}, and {} more faults", rest.len())),
     }
 }
 

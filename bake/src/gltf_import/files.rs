@@ -1,9 +1,23 @@
-//! The only place where the importer touches the disk. In go references found in files, out come bytes, the list of
-//! files that were read, and the promise that none of them lies outside the scene's folder.
+//! The only place where the importer touches the disk. Resolves references found in files, reads the files, lists what was
+//! read, and refuses whatever lies outside the scene's folder.
 
+use super::document::file_name;
 use equilux_formats::{Error, Result};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
+
+/// Whether `path` is called as glTF files are.
+pub fn is_gltf(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
+}
+
+/// The glTF files in `folder`, but not in folders in it, sorted; none if it cannot be read.
+pub fn scenes_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut scenes: Vec<PathBuf> = entries.filter(|path| is_gltf(path) && path.is_file()).collect();
+    scenes.sort();
+    scenes
+}
 
 /// The scene's folder and what was read in it.
 pub(super) struct Files {
@@ -28,6 +42,9 @@ impl Files {
     /// Reads all of `path`, which is the scene or came from [`Files::resolve`].
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>> {
         let metadata = fs::metadata(path).map_err(|error| unreadable(path, &error))?;
+        if metadata.is_dir() {
+            return Err(not_one_scene(path));
+        }
         if !metadata.is_file() {
             return Err(Error::new(path, "not a regular file", "a file that can be read", "name a file"));
         }
@@ -38,16 +55,32 @@ impl Files {
         Ok(bytes)
     }
 
-    /// The file that `reference` means in the file `from`; one file has one path, however it is referred to.
-    pub(super) fn resolve(&self, from: &Path, reference: &str) -> Result<PathBuf> {
+    /// Like [`Files::read`]; errors name the file `from` and what in it refers to `path`.
+    pub(super) fn read_referenced(&mut self, from: &Path, path: &Path, what: &str) -> Result<Vec<u8>> {
+        self.read(path).map_err(|error| {
+            Error::new(
+                from,
+                format!("{what} in {}, which {}", path.display(), error.found),
+                error.expected,
+                error.remedy,
+            )
+        })
+    }
+
+    /// The file that `reference` means in the file `from`; one file has one path, however it is referred to. `what` says in
+    /// errors what refers to it.
+    pub(super) fn resolve(&self, from: &Path, reference: &str, what: &str) -> Result<PathBuf> {
         let refused = |why: &str| {
             Error::new(
                 from,
-                format!("the reference '{reference}', which {why}"),
+                format!("{what} with the reference '{reference}', which {why}"),
                 "a relative path to a file in the scene's folder",
                 "move that file beside the scene and refer to it by a relative path",
             )
         };
+        if reference.is_empty() {
+            return Err(refused("is empty"));
+        }
         if has_scheme(reference) {
             return Err(refused("is a URL or an absolute path"));
         }
@@ -61,13 +94,19 @@ impl Files {
         let target = self.root.join(&relative).canonicalize().map_err(|error| {
             Error::new(
                 from,
-                format!("the reference '{reference}', but {} cannot be read ({error})", relative.display()),
+                format!(
+                    "{what} with the reference '{reference}', but {} cannot be read ({error})",
+                    relative.display()
+                ),
                 "an existing file",
                 "put the file there or correct the reference",
             )
         })?;
         let inside =
             target.strip_prefix(&self.root).map_err(|_| refused("leaves the scene's folder by a link"))?;
+        if target.is_dir() {
+            return Err(refused("is a folder"));
+        }
         Ok(self.folder.join(inside))
     }
 }
@@ -92,6 +131,19 @@ fn leaves(relative: &Path) -> Option<Component<'_>> {
         }
     }
     None
+}
+
+/// The error about a folder where a scene should be.
+fn not_one_scene(folder: &Path) -> Error {
+    let found = match &scenes_in(folder)[..] {
+        [] => "a folder without a .gltf or .glb file in it".to_owned(),
+        [only] => format!("a folder with {}", file_name(only)),
+        [first, second, rest @ ..] => {
+            let more = if rest.is_empty() { String::new() } else { format!(" and {} more", rest.len()) };
+            format!("a folder with several scenes, {}, {}{more}", file_name(first), file_name(second))
+        }
+    };
+    Error::new(folder, found, "a glTF file, or a folder with one", "name a file")
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> Error {

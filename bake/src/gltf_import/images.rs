@@ -1,63 +1,95 @@
-//! Images behind textures: in go PNG and JPEG files, embedded or beside the glTF file, out come [`Texture`]s. Read are only
-//! images that colour what is baked.
+//! Images behind textures: PNG, JPEG and WebP files, embedded or beside the glTF file, as [`Texture`]s. Only images that
+//! colour what is baked are read.
 
-use super::buffers::uri_bytes;
-use super::document::Document;
+use super::buffers::{Buffers, uri_bytes};
+use super::document::{Document, file_name};
 use super::files::Files;
+use super::notes::Notes;
 use equilux_formats::{Error, Result, Texture, Wrap};
-use gltf::image::Source;
-use gltf::texture::WrappingMode;
+use gltf::json;
+use gltf::texture::{Info, WrappingMode};
 use image::{ImageFormat, ImageReader, RgbaImage};
 use std::collections::{BTreeSet, HashMap};
 use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
+/// The number of the image that `info` shows, unless its texture has none that can be read here.
+pub(super) fn image_of(info: &Info) -> Option<usize> {
+    info.texture().source().map(|image| image.index())
+}
+
 /// The pixels of the images of `gltf` that colour reflectance or emission, by number.
 pub(super) fn read_images(
     files: &mut Files,
     path: &Path,
     gltf: &gltf::Document,
-    buffers: &[Vec<u8>],
+    buffers: &Buffers,
+    notes: &mut Notes,
 ) -> Result<HashMap<usize, RgbaImage>> {
     let of = |material: gltf::Material| {
         let reflectance = material.pbr_metallic_roughness().base_color_texture();
-        [reflectance, material.emissive_texture()].map(|info| Some(info?.texture().source().index()))
+        [reflectance, material.emissive_texture()].map(|info| info.as_ref().and_then(image_of))
     };
     let used: BTreeSet<usize> = gltf.materials().flat_map(of).flatten().collect();
-    let used = gltf.images().filter(|image| used.contains(&image.index()));
-    used.map(|image| Ok((image.index(), read_image(files, path, &image, buffers)?))).collect()
+    let mut pixels = HashMap::new();
+    // From the JSON, as the crate panics on images without data.
+    for (index, image) in gltf.as_json().images.iter().enumerate() {
+        let what = format!("image {}", name(image).map_or_else(|| index.to_string(), str::to_owned));
+        if used.contains(&index) {
+            pixels.insert(index, read_image(files, path, gltf, buffers, image, &what)?);
+        } else if image.uri.is_none() && image.buffer_view.is_none() {
+            notes.add(
+                file_name(path),
+                format!("{what} has neither uri nor bufferView, and nothing here needs it"),
+            );
+        }
+    }
+    Ok(pixels)
 }
 
-fn read_image(files: &mut Files, path: &Path, image: &gltf::Image, buffers: &[Vec<u8>]) -> Result<RgbaImage> {
-    let named = image.name().or(match image.source() {
-        Source::Uri { uri, .. } if !uri.starts_with("data:") => Some(uri),
-        _ => None,
-    });
-    let what = format!("image {}", named.map_or_else(|| image.index().to_string(), str::to_owned));
-    let decoded = match image.source() {
-        Source::Uri { uri, .. } => decode(&uri_bytes(files, path, uri, &what)?),
-        Source::View { view, .. } => {
-            let end = view.offset().checked_add(view.length());
-            let bytes = end.and_then(|end| buffers[view.buffer().index()].get(view.offset()..end));
-            bytes.map_or_else(|| Err("its buffer view reaches past its buffer".to_owned()), decode)
+fn name(image: &json::Image) -> Option<&str> {
+    let file = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
+    image.name.as_deref().or(file).filter(|name| !name.is_empty())
+}
+
+/// The pixels of `image`, which errors call `what`.
+fn read_image(
+    files: &mut Files,
+    path: &Path,
+    gltf: &gltf::Document,
+    buffers: &Buffers,
+    image: &json::Image,
+    what: &str,
+) -> Result<RgbaImage> {
+    let view = image.buffer_view.and_then(|view| gltf.views().nth(view.value()));
+    let decoded = match (&image.uri, view) {
+        (Some(uri), _) => decode(&uri_bytes(files, path, uri, what)?),
+        (None, Some(view)) => decode(buffers.view(&view, what)?),
+        (None, None) => {
+            return Err(Error::new(
+                path,
+                format!("{what} with neither uri nor bufferView"),
+                "one of them, as a material's colour needs the image",
+                "export the file again with its images, or remove the texture",
+            ));
         }
     };
     decoded.map_err(|why| {
         Error::new(
             path,
             format!("{what} cannot be decoded ({why})"),
-            "a PNG or JPEG image",
+            "a PNG, JPEG or WebP image",
             "save the image again, or remove the texture",
         )
     })
 }
 
-/// The pixels of a PNG or JPEG file, whatever it is called. Of 16-bit channels the upper bits stay.
+/// The pixels of a PNG, JPEG or WebP file, whatever it is called. Of 16-bit channels the upper bits stay.
 fn decode(bytes: &[u8]) -> std::result::Result<RgbaImage, String> {
     let format = image::guess_format(bytes).ok();
-    let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg)) = format else {
-        return Err("neither PNG nor JPEG".to_owned());
+    let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) = format else {
+        return Err("neither PNG nor JPEG nor WebP".to_owned());
     };
     let image = ImageReader::with_format(Cursor::new(bytes), format).decode();
     let image = image.map_err(|error| error.to_string())?.into_rgba8();
@@ -80,12 +112,12 @@ pub(super) enum Alpha {
 pub(super) struct Textures(HashMap<(usize, [Wrap; 2], Alpha), Arc<Texture>>);
 
 impl Textures {
-    /// The texture `source` of `document`.
-    pub(super) fn get(&mut self, document: &Document, source: &gltf::Texture, alpha: Alpha) -> Arc<Texture> {
-        let (image, sampler) = (source.source().index(), source.sampler());
+    /// The texture of `document` that `info` names, if it has an image.
+    pub(super) fn get(&mut self, document: &Document, info: &Info, alpha: Alpha) -> Option<Arc<Texture>> {
+        let (image, sampler) = (image_of(info)?, info.texture().sampler());
         let wrap = [sampler.wrap_s(), sampler.wrap_t()].map(wrap);
         let made = self.0.entry((image, wrap, alpha));
-        Arc::clone(made.or_insert_with(|| Arc::new(texture(&document.images[&image], wrap, alpha))))
+        Some(Arc::clone(made.or_insert_with(|| Arc::new(texture(&document.images[&image], wrap, alpha)))))
     }
 }
 

@@ -23,8 +23,11 @@ pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Res
         Kind::Spot { inner_cone_angle, outer_cone_angle } => {
             let (inner, outer) = (f64::from(inner_cone_angle), f64::from(outer_cone_angle));
             // glTF bounds the outer angle by π/2, which rounds up in f32.
-            if !(0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6) {
-                return Err(wrong(format!("the cone {inner} to {outer}"), "0 ≤ inner < outer ≤ π/2"));
+            if !(0.0 <= inner && inner <= outer && 0.0 < outer && outer <= FRAC_PI_2 + 1e-6) {
+                return Err(wrong(
+                    format!("innerConeAngle {inner_cone_angle} and outerConeAngle {outer_cone_angle}"),
+                    "0 ≤ inner ≤ outer ≤ π/2 and outer above 0",
+                ));
             }
             LightKind::Spot { inner, outer: outer.min(FRAC_PI_2) }
         }
@@ -56,14 +59,18 @@ pub(super) fn camera(document: &Document, placed: &Placed, notes: &mut Notes) ->
     let Some(index) = placed.node.camera().map(|camera| camera.index()) else { return Ok(None) };
     // From the JSON, as the crate believes the stated type even where the object for it is missing.
     let Some(lens) = &document.gltf.as_json().cameras[index].perspective else {
-        notes.add(format!("camera {}", placed.name()), "orthographic, which is not supported, and ignored");
+        notes.add(
+            format!("camera {}", placed.name()),
+            "orthographic or of an unknown kind, which is not supported, and ignored",
+        );
         return Ok(None);
     };
     let (vertical_fov, aspect) = (f64::from(lens.yfov), lens.aspect_ratio.map(f64::from));
-    if !(vertical_fov > 0.0
-        && vertical_fov < PI
-        && aspect.is_none_or(|ratio| ratio > 0.0 && ratio.is_finite()))
-    {
+    if vertical_fov >= PI {
+        notes.add(format!("camera {}", placed.name()), "its yfov is π or more, and it is ignored");
+        return Ok(None);
+    }
+    if !(vertical_fov > 0.0 && aspect.is_none_or(|ratio| ratio > 0.0 && ratio.is_finite())) {
         return Err(document.error(
             format!("camera {} with yfov {vertical_fov} and aspectRatio {aspect:?}", placed.name()),
             "0 < yfov < π and aspectRatio > 0",

@@ -7,10 +7,11 @@
 
 use super::coordinates::Use;
 use super::document::Document;
-use super::images::{self, Alpha};
+use super::images::{self, Alpha, image_of};
 use super::notes::Notes;
 use equilux_formats::{Material, Result, Textures};
 use gltf::material::AlphaMode;
+use gltf::texture::Info;
 use std::f64::consts::PI;
 
 /// The extension for glass.
@@ -57,7 +58,7 @@ impl Uses {
     /// What `source` says.
     pub(super) fn of(source: &gltf::Material) -> Self {
         let reflectance = source.pbr_metallic_roughness().base_color_texture();
-        let of = |info: Option<gltf::texture::Info>| info.as_ref().map(Use::of);
+        let of = |info: Option<Info>| info.filter(|info| image_of(info).is_some()).as_ref().map(Use::of);
         Self { reflectance: of(reflectance), emission: of(source.emissive_texture()) }
     }
 }
@@ -110,9 +111,7 @@ fn textures(document: &Document, source: &gltf::Material, shelf: &mut images::Te
         AlphaMode::Blend => Alpha::Share,
         AlphaMode::Mask => Alpha::From(least_alpha(source.alpha_cutoff(), pbr.base_color_factor()[3])),
     };
-    let mut texture = |info: Option<gltf::texture::Info>, alpha| {
-        info.map(|info| shelf.get(document, &info.texture(), alpha))
-    };
+    let mut texture = |info: Option<Info>, alpha| shelf.get(document, &info?, alpha);
     Textures {
         reflectance: texture(pbr.base_color_texture(), alpha),
         emission: texture(source.emissive_texture(), Alpha::Ignored),
@@ -144,6 +143,10 @@ fn note_ignored(source: &gltf::Material, subject: &str, notes: &mut Notes) {
     if others {
         notes.add(subject, "textures are ignored but for base colour and emission");
     }
+    let colours = [pbr.base_color_texture(), source.emissive_texture()];
+    for info in colours.into_iter().flatten().filter(|info| image_of(info).is_none()) {
+        notes.add(subject, format!("a texture {} is ignored", without_image(&info.texture())));
+    }
     if pbr.metallic_factor() > 0.0 {
         notes.add(subject, "metallic, yet reflects its base colour diffusely");
     }
@@ -155,6 +158,15 @@ fn note_ignored(source: &gltf::Material, subject: &str, notes: &mut Notes) {
     }
     if source.extension_value(TRANSMISSION).is_some() {
         notes.add(subject, "lets light through in the file, here it is opaque and reflects its base colour");
+    }
+}
+
+/// What is wrong with a texture that has no image.
+fn without_image(texture: &gltf::Texture) -> String {
+    let extensions = texture.extensions().into_iter().flat_map(|extensions| extensions.keys());
+    match extensions.cloned().collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => "without an image".to_owned(),
+        names => format!("whose only image is one of {names}, which cannot be read here,"),
     }
 }
 

@@ -66,14 +66,14 @@ fn read_mesh(
             notes.add(&subject, "points and lines are ignored, they have no area");
             continue;
         };
+        if triangles.left_over > 0 {
+            notes.add(&subject, "its last one or two corners make no triangle and are ignored");
+        }
         if primitive.material().index().is_none() {
             notes.add(&subject, "no material, so white with reflectance 1 as glTF has it");
         }
         if [uses.reflectance, uses.emission].iter().flatten().any(|of| !of.is_served_by(&primitive)) {
             notes.add(&subject, "a texture without coordinates on the mesh is ignored");
-        }
-        if primitive.morph_targets().len() > 0 {
-            notes.add(&subject, "morph targets are ignored");
         }
         let surfaces = surfaces(&triangles);
         if let Some((step, edge)) = surfaces.lost_digits {

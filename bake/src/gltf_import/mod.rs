@@ -17,18 +17,22 @@ mod document;
 mod drafts;
 mod extras;
 mod files;
+mod glb;
 mod images;
 mod instancing;
 mod lights;
 mod materials;
 mod meshes;
 mod nodes;
+mod normal_form;
 mod notes;
 mod part_files;
 mod parts;
 mod repaint;
 mod surfaces;
 mod triangles;
+
+pub use files::{is_gltf, scenes_in};
 
 use crate::tidy::tidy;
 use document::Document;

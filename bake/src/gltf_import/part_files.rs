@@ -57,7 +57,7 @@ impl PartFiles {
             let remark = format!("its own mesh and children are ignored, {reference} stands there");
             self.notes.add(placed.name(), remark);
         }
-        let path = self.files.resolve(&from.path, reference)?;
+        let path = self.files.resolve(&from.path, reference, &format!("node {}", placed.name()))?;
         self.check_chain(from, &path)?;
         let draft = match self.drafts.get(&path) {
             Some(draft) => Rc::clone(draft),

@@ -290,7 +290,7 @@ mod tests {
 
     fn of(corners: Vec<[[f64; 3]; 3]>) -> Surfaces {
         let corners = corners.into_iter().map(|triangle| triangle.map(DVec3::from_array)).collect();
-        surfaces(&Triangles { corners, lightmap: None, textured: None, rounded: true })
+        surfaces(&Triangles { corners, lightmap: None, textured: None, rounded: true, left_over: 0 })
     }
 
     const A: [f64; 3] = [0.0, 0.0, 0.0];
@@ -366,8 +366,13 @@ mod tests {
             ("all elsewhere", second.map(|place| place + 0.3), 2),
         ] {
             let corners = [[A, B, C], [A, C, D]].map(|triangle| triangle.map(DVec3::from_array)).to_vec();
-            let triangles =
-                Triangles { corners, lightmap: Some(vec![first, second]), textured: None, rounded: true };
+            let triangles = Triangles {
+                corners,
+                lightmap: Some(vec![first, second]),
+                textured: None,
+                rounded: true,
+                left_over: 0,
+            };
             let kept = surfaces(&triangles).kept;
             assert_eq!(kept.len(), count, "{case}");
             let found = kept[0].lightmap.expect("a place in the lightmap");

@@ -1,5 +1,5 @@
-//! Primitives as triangles: in go a primitive's accessors, out come corner positions in the order of the file.
-//! Triangle lists, strips and fans, indexed or not; points and lines have no area and give nothing.
+//! Primitives as triangles: corner positions in the order of the file, from a primitive's accessors. Triangle lists,
+//! strips and fans, indexed or not; points and lines have no area and give nothing.
 
 use super::accessors::{check_type, components};
 use super::coordinates::{Use, texture_coordinates, vertex_colours};
@@ -21,6 +21,8 @@ pub(super) struct Triangles {
     pub(super) textured: Option<Vec<TexturedTriangle>>,
     /// Whether positions were rounded to f32 on their way in.
     pub(super) rounded: bool,
+    /// Corners at the end of a list that are too few for a triangle.
+    pub(super) left_over: usize,
 }
 
 /// The triangles of `primitive`, whose material has textures as `uses` says, or nothing where it has none by its kind.
@@ -38,13 +40,7 @@ pub(super) fn triangles(
         Some(indices) => indexed(document, &indices, positions.len(), mesh)?,
         None => (0..positions.len()).collect(),
     };
-    if primitive.mode() == Mode::Triangles && order.len() % 3 != 0 {
-        return Err(document.error(
-            format!("mesh {mesh} with {} corners in a list of triangles", order.len()),
-            "a multiple of 3",
-            "export the file again, it is damaged",
-        ));
-    }
+    let left_over = if primitive.mode() == Mode::Triangles { order.len() % 3 } else { 0 };
     let lightmap = texture_coordinates(document, primitive, 1, positions.len(), mesh)?;
     let lightmap = lightmap.filter(|places| places.iter().all(|place| place.is_finite()));
     let colouring = Colouring::of(document, primitive, uses, positions.len(), mesh)?;
@@ -58,7 +54,13 @@ pub(super) fn triangles(
         let triangles = corners.iter().zip(vertices_of());
         triangles.map(|(&corners, vertices)| colouring.triangle(corners, vertices)).collect()
     });
-    Ok(Some(Triangles { corners, lightmap, textured, rounded: accessor.data_type() == DataType::F32 }))
+    Ok(Some(Triangles {
+        corners,
+        lightmap,
+        textured,
+        rounded: accessor.data_type() == DataType::F32,
+        left_over,
+    }))
 }
 
 type Assembly = fn(usize) -> Box<dyn Iterator<Item = [usize; 3]>>;
