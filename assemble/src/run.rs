@@ -17,12 +17,13 @@ use crate::points::{self, Place};
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::render::{Reference, Shot};
+use crate::report::summary::HIDDEN_SHELLS;
 use crate::report::{Report, Run, cpu_seconds, peak_rss, summary};
 use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Preparation, prepare};
+use equilux_bake::prepare::{Preparation, lost_digits_note, prepare};
 use equilux_bake::{depfile, stamp};
 use equilux_formats::{Result, Scene, Store, Swept};
 use glam::DVec3;
@@ -118,6 +119,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let mut scene = import_scene(&job.scene)?;
     scene.sources.extend(job.beside().map(Path::to_path_buf));
     let prepared = prepare(&scene, &job.preparation)?;
+    scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
     job.check(&scene)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
     let (places, against) = job.tables(scene.origin)?;
@@ -160,6 +162,9 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         classic: classic.as_ref(),
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&run) };
+    if scene.hidden_shells > 0 {
+        report.blocks.coupling_left_out.insert(HIDDEN_SHELLS.into(), scene.hidden_shells);
+    }
     report.bytes.peak_rss = peak;
     report.form_factors_computed += direct.computed;
     if job.explain {

@@ -73,6 +73,7 @@ const MOST_ELEMENTS: u128 = 4_000_000;
 pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     let scales = largest_scales(scene);
     let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene, &scales));
+    refuse_lost_digits(scene, element_size, &scales)?;
     let mut parts = Vec::new();
     for (part, &scale) in scene.parts.iter().zip(&scales) {
         let size = part.element_size.map_or(element_size, ElementSize::Metres);
@@ -116,8 +117,49 @@ fn largest_scales(scene: &Scene) -> Vec<f64> {
 
 /// A size for about the usual number of elements in all instances.
 fn suitable_size(scene: &Scene, scales: &[f64]) -> ElementSize {
+    default_size(placed_area(scene, scales))
+}
+
+/// The area of all instances, each as large as the largest of its part, m².
+fn placed_area(scene: &Scene, scales: &[f64]) -> f64 {
     let parts = scene.instances.iter().map(|instance| instance.part.index());
-    default_size(parts.map(|part| area(&scene.parts[part]) * scales[part].powi(2)).sum())
+    parts.map(|part| area(&scene.parts[part]) * scales[part].powi(2)).sum()
+}
+
+/// Coordinates in f32 must tell elements apart. Steps that are larger than this share of an element are worth a note.
+const NOTED_STEP: f64 = 0.01;
+
+/// Refuses a scene of which f32 cannot tell elements apart.
+fn refuse_lost_digits(scene: &Scene, size: ElementSize, scales: &[f64]) -> Result<()> {
+    let metres = match size {
+        ElementSize::Metres(metres) => metres,
+        ElementSize::Mesh => {
+            let faces: usize =
+                scene.instances.iter().map(|i| scene.parts[i.part.index()].surfaces.len()).sum();
+            (placed_area(scene, scales) / faces as f64).sqrt()
+        }
+    };
+    if scene.coordinate_step <= metres {
+        return Ok(());
+    }
+    Err(Error::new(
+        &scene.file,
+        format!("coordinates so large that f32 tells places {} m apart at best", scene.coordinate_step),
+        format!("at most the size of elements, {metres} m"),
+        "move the scene close to the origin",
+    ))
+}
+
+/// A sentence, if elements of this size are noticeably distorted by what f32 leaves of the scene's coordinates.
+pub fn lost_digits_note(scene: &Scene, size: ElementSize) -> Option<String> {
+    let ElementSize::Metres(metres) = size else { return None };
+    (scene.coordinate_step > NOTED_STEP * metres).then(|| {
+        format!(
+            "coordinates are so large that f32 tells places {:.1e} m apart at best, beside elements of {size}: shapes and \
+             places are rounded; move the scene close to the origin",
+            scene.coordinate_step
+        )
+    })
 }
 
 fn refuse_too_many(scene: &Scene, part: &Part, elements: u128, size: ElementSize) -> Result<()> {

@@ -378,7 +378,6 @@ fn parts_start_at_zero_and_far_ones_keep_their_digits() {
         scene.instances[0].placement.translation.length() < 100.0,
         "the scene is moved close to its origin"
     );
-    assert!(noted(&scene, "digits"), "{:?}", scene.notes);
 }
 
 #[test]

@@ -24,6 +24,8 @@ pub struct Scene {
     pub lights: Vec<PunctualLight>,
     /// Where the origin of scene coordinates lies in the file's coordinates, metres: zero, unless the scene is far from there.
     pub origin: DVec3,
+    /// What f32 leaves undecided of the scene's coordinates in its file, metres: the distance from the largest to the next.
+    pub coordinate_step: f64,
     /// Number of closed shells of two-sided surfaces whose inner sides were hidden, as nothing shines inside.
     pub hidden_shells: usize,
     /// What was ignored, dropped or repaired on the way in, one sentence each.

@@ -31,6 +31,7 @@ fn scene(part: Part, placements: &[DAffine3]) -> Scene {
         cameras: vec![],
         lights: vec![],
         origin: DVec3::ZERO,
+        coordinate_step: 0.0,
         hidden_shells: 0,
         notes: vec![],
     }

@@ -9,14 +9,14 @@ use crate::coupling::{Coupler, Foreseen};
 use crate::hull::intruders;
 use crate::outputs::check_writable;
 use crate::placed::Placed;
-use crate::report::summary::{BLACK_ROWS, SHARED, UNSEEN};
+use crate::report::summary::{BLACK_ROWS, HIDDEN_SHELLS, SHARED, UNSEEN};
 use crate::run::Job;
 use equilux_bake::batch::damage_notes;
 use equilux_bake::cached::Origin;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, Oven};
-use equilux_bake::prepare::{Prepared, PreparedPart, prepare};
+use equilux_bake::prepare::{Prepared, PreparedPart, lost_digits_note, prepare};
 use equilux_bake::world::World;
 use equilux_formats::{Instance, Result, Store};
 use serde::Serialize;
@@ -95,8 +95,9 @@ pub struct Step {
 /// What the job would do. Computes no form factor. Parts whose form factors are in the cache are brought up to date
 /// there: a new paint is solved now instead of by the run.
 pub fn plan(job: &Job) -> Result<Plan> {
-    let scene = import_scene(&job.scene)?;
+    let mut scene = import_scene(&job.scene)?;
     let prepared = prepare(&scene, &job.preparation)?;
+    scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
     check_writable(job, &scene)?;
     let store = Store::open(&job.cache)?;
     let stopped = Monitor::default();
@@ -117,7 +118,7 @@ pub fn plan(job: &Job) -> Result<Plan> {
         parts: planned_parts(&prepared, &baked, |part| oven.foresee(part)),
         unseen: unseen.iter().map(|pair| pair.map(name)).collect(),
         exchange: exchange::planned(job, &prepared, &baked),
-        left_out: left_out(&prepared, unseen.len()),
+        left_out: left_out(&prepared, unseen.len(), scene.hidden_shells),
         classic_matrix_bytes: world.elements.len().pow(2) * size_of::<f64>(),
         instances: planned_instances(&prepared, baked, |placed| {
             let coupler = Coupler { placed, store: &store, file: &job.scene, resolution, monitor: &stopped };
@@ -176,7 +177,7 @@ fn anew(prepared: &Prepared) -> Vec<Foreseen> {
 }
 
 /// What can be told without form factors of what the report of the run will count.
-fn left_out(prepared: &Prepared, unseen: usize) -> BTreeMap<String, usize> {
+fn left_out(prepared: &Prepared, unseen: usize, hidden_shells: usize) -> BTreeMap<String, usize> {
     let parts = || prepared.instances.iter().map(|instance| &prepared.parts[instance.part.index()]);
     let black = |part: &PreparedPart| part.optics.reflectance.iter().filter(|&&rho| rho == [0.0; 3]).count();
     let counts = [
@@ -184,6 +185,7 @@ fn left_out(prepared: &Prepared, unseen: usize) -> BTreeMap<String, usize> {
         (UNSEEN, 2 * unseen),
         (BLACK_ROWS, parts().map(black).sum()),
         (SHARED, prepared.instances.len() - prepared.parts.len()),
+        (HIDDEN_SHELLS, hidden_shells),
     ];
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
 }

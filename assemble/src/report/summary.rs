@@ -16,6 +16,8 @@ use std::collections::BTreeMap;
 
 /// Reasons to leave something out, as they follow a count.
 pub const UNSEEN: &str = "couplings between parts that cannot see each other";
+/// Shells of which only the outside has elements.
+pub const HIDDEN_SHELLS: &str = "inner sides of closed two-sided shells in which nothing shines";
 /// Rows that wait for the end of the exchange.
 pub const BLACK_ROWS: &str = "rows of black receivers in every round, gathered once in the end";
 /// Local equilibria of instances that had nothing to answer.

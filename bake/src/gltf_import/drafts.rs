@@ -7,9 +7,9 @@ use super::materials::Paint;
 use super::meshes::Mesh;
 use super::notes::Notes;
 use super::repaint::Look;
-use super::surfaces::Dropped;
+use super::surfaces::{Dropped, f32_spacing};
 use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface, TexturedTriangle};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 /// No part has more surfaces: a few kilobytes of nodes that share a mesh could ask for any number.
 const MOST_SURFACES: usize = 1 << 24;
@@ -56,6 +56,16 @@ pub(super) struct Draft {
     pub(super) lights: Vec<PunctualLight>,
     pub(super) settings: Settings,
     pub(super) dropped: Dropped,
+    /// What f32 leaves undecided of its coordinates in the file, in its own unit.
+    pub(super) step: f64,
+}
+
+/// What f32 leaves undecided of coordinates after `placement`, where it left `step` before.
+pub(super) fn step_after(step: f64, placement: DAffine3) -> f64 {
+    let DAffine3 { matrix3, translation } = placement;
+    let scale =
+        [matrix3.x_axis, matrix3.y_axis, matrix3.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
+    (step * scale).max(f32_spacing(translation.abs().max_element()))
 }
 
 impl Draft {
@@ -74,6 +84,7 @@ impl Draft {
             self.add_textured(&primitive.textured, |_| material, placement);
         }
         self.dropped += mesh.dropped;
+        self.step = self.step.max(step_after(mesh.step, placement));
         Ok(())
     }
 
@@ -93,6 +104,7 @@ impl Draft {
         self.add_textured(&other.textured, |old| materials[old.index()], placement);
         self.lights.extend(other.lights.iter().map(|light| moved(light, placement, look.emission_scale)));
         self.dropped += other.dropped;
+        self.step = self.step.max(step_after(other.step, placement));
         Ok(())
     }
 

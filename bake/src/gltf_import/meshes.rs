@@ -17,6 +17,8 @@ pub(super) struct Mesh {
     pub(super) primitives: Vec<Primitive>,
     /// What was left out of it.
     pub(super) dropped: Dropped,
+    /// What rounding left undecided of its largest coordinate, in its own unit.
+    pub(super) step: f64,
 }
 
 /// A primitive: surfaces of one paint. All name material 0, until a part numbers its paints.
@@ -76,13 +78,7 @@ fn read_mesh(
             notes.add(&subject, "a texture without coordinates on the mesh is ignored");
         }
         let surfaces = surfaces(&triangles);
-        if let Some((step, edge)) = surfaces.lost_digits {
-            let remark = format!(
-                "positions are so large that f32 steps by {step:.1e} m beside an edge of {edge:.1e} m: digits are lost; \
-                 model near the origin and move the node"
-            );
-            notes.add(&subject, remark);
-        }
+        mesh.step = mesh.step.max(surfaces.step);
         mesh.dropped += surfaces.dropped;
         let paint = paint(document, &primitive.material(), textures, notes)?;
         let (surfaces, textured) = (surfaces.kept, surfaces.textured);

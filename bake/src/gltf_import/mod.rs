@@ -36,7 +36,7 @@ pub use files::{is_gltf, scenes_in};
 
 use crate::tidy::tidy;
 use document::Document;
-use drafts::{Draft, Settings};
+use drafts::{Draft, Settings, step_after};
 use equilux_formats::{Instance, LocalSolver, MaterialId, PartId, Repainted, Result, Scene};
 use glam::{DAffine3, DMat3, DVec3};
 use instancing::MOST_COPIES;
@@ -87,6 +87,8 @@ struct Made {
     start: DVec3,
     /// Its materials, with the names that they have in this recipe.
     paints: Rc<[Paint]>,
+    /// What f32 left undecided of the coordinates of its draft, in the draft's unit.
+    step: f64,
 }
 
 /// What a part is made from; equal recipes make equal parts. Floats as bits.
@@ -118,6 +120,7 @@ impl<'a> Stage<'a> {
             cameras: Vec::new(),
             lights: Vec::new(),
             origin: DVec3::ZERO,
+            coordinate_step: 0.0,
             hidden_shells: 0,
             notes: Vec::new(),
         };
@@ -199,6 +202,7 @@ impl<'a> Stage<'a> {
         settings: Settings,
         contents: &Contents<'a>,
     ) -> Result<()> {
+        let root = placement;
         let (linear, placement) = split(placement);
         let recipe = recipe(contents, settings, linear);
         let made = match self.made.get(&recipe) {
@@ -209,7 +213,8 @@ impl<'a> Stage<'a> {
                 made
             }
         };
-        let Some(Made { part, start, paints }) = made else { return Ok(()) };
+        let Some(Made { part, start, paints, step }) = made else { return Ok(()) };
+        self.scene.coordinate_step = self.scene.coordinate_step.max(step_after(step, root));
         self.part_files.asked.hear(look, &*paints);
         self.scene.instances.push(Instance {
             name,
@@ -244,7 +249,7 @@ impl<'a> Stage<'a> {
         if id.index() == known && dropped != Dropped::default() {
             self.part_files.notes.add(name, remark(dropped));
         }
-        Ok(Some(Made { part: id, start, paints: paints.into() }))
+        Ok(Some(Made { part: id, start, paints: paints.into(), step: draft.step }))
     }
 
     fn draft(&mut self, nodes: &[Placed<'a>]) -> Result<Draft> {

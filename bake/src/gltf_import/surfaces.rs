@@ -14,8 +14,6 @@ const ROUNDED_CORNERS: f64 = 4.0;
 const BEND: f64 = 1e-4;
 /// Sine of the bluntest corner of a quad that is no parallelogram; cutting up a blunter one makes needles.
 const BLUNTEST: f64 = 0.1;
-/// Steps of f32 that are larger than this share of an edge distort the shape.
-const LOST_DIGITS: f64 = 1e-4;
 /// How far corners may be off their place in a lightmap, in its widths: a tenth of a texel of 4096, or a step of 16-bit
 /// coordinates and a half.
 const LIGHTMAP_STEP: f64 = 2.5e-5;
@@ -43,8 +41,8 @@ pub(super) struct Surfaces {
     /// The triangles that they were made of, if colours vary over them.
     pub(super) textured: Vec<TexturedTriangle>,
     pub(super) dropped: Dropped,
-    /// The step of f32 and the shortest edge, metres, where the step is too coarse for the edge.
-    pub(super) lost_digits: Option<(f64, f64)>,
+    /// What rounding left undecided of the largest coordinate, in the mesh's unit.
+    pub(super) step: f64,
 }
 
 /// Cleans `triangles` and pairs them.
@@ -52,18 +50,15 @@ pub(super) fn surfaces(triangles: &Triangles) -> Surfaces {
     let spacing = if triangles.rounded { f32_spacing } else { f64_spacing };
     let (kept, dropped) = clean(triangles, spacing);
     let step = spacing(kept.iter().map(|kept| largest_coordinate(&kept.corners)).fold(0.0, f64::max));
-    let shortest =
-        kept.iter().flat_map(|kept| edges(&kept.corners)).map(DVec3::length).fold(f64::MAX, f64::min);
-    let lost_digits = (!kept.is_empty() && step > LOST_DIGITS * shortest).then_some((step, shortest));
     let textured = match &triangles.textured {
         Some(textured) => kept.iter().map(|kept| textured[kept.source].clone()).collect(),
         None => Vec::new(),
     };
-    Surfaces { kept: pair(&kept, step), textured, dropped, lost_digits }
+    Surfaces { kept: pair(&kept, step), textured, dropped, step }
 }
 
 /// The distance from `magnitude` to the next f32.
-fn f32_spacing(magnitude: f64) -> f64 {
+pub(super) fn f32_spacing(magnitude: f64) -> f64 {
     let magnitude = magnitude as f32;
     f64::from(magnitude.next_up()) - f64::from(magnitude)
 }
@@ -390,9 +385,8 @@ mod tests {
     }
 
     #[test]
-    fn digits_lost_far_from_the_origin_are_noticed() {
-        let at = |x: f64| of(vec![[A, B, D].map(|[p, q, r]| [p + x, q, r])]).lost_digits;
-        assert_eq!(at(100.0), None);
-        assert_eq!(at(2e4), Some((2.0_f64.powi(-9), 2.0_f64.sqrt())));
+    fn the_step_is_that_of_f32_at_the_largest_coordinate() {
+        let at = |x: f64| of(vec![[A, B, D].map(|[p, q, r]| [p + x, q, r])]).step;
+        assert_eq!(at(2e4), 2.0_f64.powi(-9));
     }
 }
