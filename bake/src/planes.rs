@@ -7,31 +7,30 @@ use std::collections::HashMap;
 /// Normals are sorted into cubes of this side; neighbours are searched too.
 const CELL: f64 = 1.0 / 64.0;
 
-/// How far, relative to the largest coordinate, a corner may lie off its plane: two units in the last place of the
-/// f32 numbers that glTF stores.
+/// How far, relative to the largest coordinate of the faces concerned, a corner may lie off its plane: two units in the last
+/// place of the f32 numbers that glTF stores.
 pub const FLATNESS: f64 = 2.0 * f32::EPSILON as f64;
 
 /// A plane number for every face; faces get the same number if all corners of the one lie within the flatness
 /// tolerance of the plane of the other, on either side. Larger faces set the planes: theirs are known best.
 pub fn group(faces: &[Face]) -> Vec<u32> {
-    let tolerance = tolerance(faces.iter().flat_map(|face| &face.corners));
+    let tolerances: Vec<f64> = faces.iter().map(|face| tolerance(&face.corners)).collect();
     let mut order: Vec<usize> = (0..faces.len()).collect();
     let sizes: Vec<f64> = faces.iter().map(size).collect();
     order.sort_by(|&a, &b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(&b)));
 
-    let mut planes: Vec<&Face> = Vec::new();
+    let mut planes: Vec<usize> = Vec::new();
     let mut cells: HashMap<[i32; 3], Vec<u32>> = HashMap::new();
     let mut of_face = vec![0; faces.len()];
     for index in order {
         let face = &faces[index];
         let axis = axis(face.normal);
-        let known = neighbours(axis)
-            .filter_map(|cell| cells.get(&cell))
-            .flatten()
-            .copied()
-            .find(|&plane| lies_in(face, planes[plane as usize], tolerance));
+        let known = neighbours(axis).filter_map(|cell| cells.get(&cell)).flatten().copied().find(|&plane| {
+            let plane = planes[plane as usize];
+            lies_in(face, &faces[plane], tolerances[index].max(tolerances[plane]))
+        });
         of_face[index] = known.unwrap_or_else(|| {
-            planes.push(face);
+            planes.push(index);
             let plane = planes.len() as u32 - 1;
             cells.entry(cell(axis)).or_default().push(plane);
             plane

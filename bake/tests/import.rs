@@ -364,9 +364,8 @@ fn parts_start_at_zero_and_far_ones_keep_their_digits() {
     let far = SQUARE.map(|[x, y, z]| [x + 1e6, y - 1e6, z + 2.0]);
     let mut gltf = Gltf::of_triangles(&far, &HALVES);
     gltf.mesh("near", json!({ "attributes": { "POSITION": 0 }, "indices": 1, "material": 0 }));
-    gltf.nodes(
-        json!([{ "name": "far", "mesh": 0, "translation": [0, 0, 1] }, { "name": "near", "mesh": 1 }]),
-    );
+    gltf.nodes(json!([{ "name": "far", "mesh": 0, "translation": [0, 0, 1] },
+               { "name": "near", "mesh": 1, "translation": [1e6, -1e6, 0] }]));
     let scene = import(&gltf);
     assert_eq!(scene.parts.len(), 1, "equal shapes at different places are one part");
     assert_eq!(scene.parts[0].name, "far");
@@ -389,7 +388,11 @@ fn roots_are_parts_and_wrappers_are_looked_through() {
         let scene = import(&gltf);
         (scene.instances.iter().map(|i| i.name.clone()).collect::<Vec<_>>().join(" "), scene.parts.len())
     };
-    let leaf = |name: &str| json!({ "name": name, "mesh": 0 });
+    // Each in a place of its own, as what lies on each other counts once.
+    let leaf = |name: &str| {
+        let place = f64::from(name.as_bytes()[0]);
+        json!({ "name": name, "mesh": 0, "translation": [3.0 * place, 0, 0] })
+    };
     let stretched = json!({ "name": "b", "mesh": 0, "scale": [2, 1, 1] });
     for (case, nodes, instances, parts) in [
         ("one", json!([leaf("a")]), "a", 1),
@@ -580,9 +583,9 @@ fn extras_reach_part_and_instance() {
     gltf = gltf.set("/materials/0/emissiveFactor", json!([1, 1, 1]));
     gltf.nodes(json!([
         { "name": "a", "mesh": 0, "extras": { "element_size": 0.25, "local_solver": "gauss-seidel", "other": [1] } },
-        { "name": "b", "mesh": 0, "extras": { "emission_scale": 0.5 }, "children": [2] },
+        { "name": "b", "mesh": 0, "translation": [0, 0, 1], "extras": { "emission_scale": 0.5 }, "children": [2] },
         { "name": "c", "mesh": 0, "translation": [2, 0, 0], "extras": { "emission_scale": 4 } },
-        { "name": "d", "mesh": 0, "extras": "whatever" },
+        { "name": "d", "mesh": 0, "translation": [0, 0, 2], "extras": "whatever" },
     ]));
     let scene = import(&gltf);
     let [a, b, _] = &scene.parts[..] else { panic!("three parts, found {}", scene.parts.len()) };
@@ -638,7 +641,11 @@ fn part_files_stand_at_their_nodes() {
 #[test]
 fn the_default_scene_decides_and_no_scene_means_all_roots() {
     let mut gltf = Gltf::with_square();
-    gltf.nodes(json!([{ "name": "a", "mesh": 0 }, { "name": "b", "mesh": 0, "children": [0] }, { "name": "c", "mesh": 0 }]));
+    gltf.nodes(json!([
+        { "name": "a", "mesh": 0 },
+        { "name": "b", "mesh": 0, "translation": [0, 0, 1], "children": [0] },
+        { "name": "c", "mesh": 0, "translation": [0, 0, 2] },
+    ]));
     for (scenes, default, expected) in [
         (json!([]), Value::Null, "b c"),
         (json!([{ "nodes": [2] }, { "nodes": [0, 2] }]), Value::Null, "c"),
@@ -850,7 +857,7 @@ fn damaged_containers_are_refused_by_name() {
     let folder = Folder::new();
     refused("missing", &folder.0.path().join("nowhere.glb"), "nowhere.glb", "cannot be read");
     refused("no such folder", &folder.0.path().join("no/where.glb"), "where.glb", "cannot be read");
-    refused("a folder", folder.0.path(), &folder.0.path().display().to_string(), "not a regular file");
+    refused("a folder", folder.0.path(), &folder.0.path().display().to_string(), "a folder without");
 }
 
 /// No prefix of a valid file crashes the importer, and none but the whole is accepted.

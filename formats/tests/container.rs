@@ -111,7 +111,7 @@ fn foreign_files_are_named_as_such() {
     let mut newer = bytes.clone();
     newer[8..12].copy_from_slice(&(FORMAT_VERSION + 6).to_le_bytes());
     let message = read_bytes::<Rows>(&folder, &newer).unwrap_err().to_string();
-    for part in ["changed.eqx", "format version 9", "expected version 4", "bake it again"] {
+    for part in ["changed.eqx", "format version 10", "expected version 4", "bake it again"] {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 
@@ -147,7 +147,7 @@ fn by_hand(count: u64, length: impl Fn(u64) -> u64) -> Vec<u8> {
     let entry = Entry { name: "numbers", number: "f64", count, length: length(frame.len() as u64), checksum };
     let index = Index { manifest: manifest(), arrays: vec![entry] };
     let messages = [rmp_serde::to_vec_named(&index).unwrap(), vec![0xC0]].concat();
-    let header = [&b"EQUILUX\0\x03\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
+    let header = [&b"EQUILUX\0\x04\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
     let checksum = *blake3::hash(&[&header[..], &messages].concat()).as_bytes();
     [&header[..], &checksum, &messages, &frame].concat()
 }
@@ -217,8 +217,7 @@ fn contents_that_break_a_promise_are_refused() {
         writer.array("group sizes", &sizes);
         writer.array("column differences", &differences);
         writer.array("form factors", &[0.5, 0.5]);
-        writer.array::<u16>("steps", &[]);
-        writer.array::<f64>("step units", &[]);
+        writer.array::<f32>("single form factors", &[]);
         writer.write_to(&path).unwrap();
         let message = read::<Rows>(&path).unwrap_err().to_string();
         assert!(message.contains(problem), "{problem:?} is not in {message:?}");

@@ -172,11 +172,15 @@ fn every_copy_is_an_instance_with_a_number_and_only_stretched_ones_are_another_p
 
 #[test]
 fn copies_of_a_part_file_are_instances_and_copies_inside_one_are_surfaces() {
-    let row = (floats(&[0., 0., 0., 0., 2., 0., 0., 4., 0.]), F32, "VEC3", 3, false);
-    let shelf = instanced(&[row], json!({ "TRANSLATION": 1 }), json!({}));
+    let row = |places: [f32; 9]| {
+        let places = (floats(&places), F32, "VEC3", 3, false);
+        instanced(&[places], json!({ "TRANSLATION": 1 }), json!({}))
+    };
+    let (shelf, shelves) =
+        (row([0., 0., 0., 0., 2., 0., 0., 4., 0.]), row([0., 0., 0., 0., 0., 9., 0., 0., 18.]));
     let workshop = Workshop::new();
     shelf.write(&workshop.path("shelf.glb"));
-    shelf.with("/nodes/0/extras/part", json!("shelf.glb")).write(&workshop.path("scene.glb"));
+    shelves.with("/nodes/0/extras/part", json!("shelf.glb")).write(&workshop.path("scene.glb"));
     let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
     assert_eq!((scene.instances.len(), scene.parts.len()), (3, 1));
     assert_eq!(scene.parts[0].surfaces.len(), 18, "three crates of six sides");

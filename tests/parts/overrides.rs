@@ -119,6 +119,9 @@ fn a_repaint_of_a_group_reaches_parts_below_and_the_nearest_one_decides() {
         json!({ "name": "group", "children": [0, 1], "extras": { "materials": red(0.5) } }),
     );
     model = model.with("/nodes/1/extras/materials", red(0.25));
+    for node in [0, 1, 3] {
+        model = model.with(&format!("/nodes/{node}/translation"), json!([0, 0, 9 * node]));
+    }
     model.write(&workshop.path("scene.glb"));
     let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
     let reds: Vec<(&str, Option<f64>)> = scene

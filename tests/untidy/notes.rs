@@ -35,7 +35,7 @@ fn a_wall_that_is_inside_out_is_named() {
         walls.surfaces[wall] = walls.surfaces[wall].flipped();
         let normal = walls.surfaces[wall].corners.double_area_vector().normalize();
         let said = notes(&[Node::new("hall", walls), Node::new("lamp", lamp()), crate_()], 0.5);
-        let said = judgements(&said);
+        let said: Vec<&String> = said.iter().filter(|note| note.contains("black back")).collect();
         let [note] = said[..] else { panic!("wall {wall}: {said:?}") };
         let direction = format!("({}, {}, {})", normal.x + 0.0, normal.y + 0.0, normal.z + 0.0);
         assert!(note.contains("`hall`") && note.contains(&direction), "wall {wall}, {direction}: {note}");
@@ -50,7 +50,8 @@ fn a_wall_that_is_inside_out_is_named() {
 #[test]
 fn sheets_and_lamps_that_show_both_sides_are_not_named() {
     let sheet = rectangle(part(grey(0.5, 0.0)), dvec3(1.0, 0.5, 1.0), DVec3::Y, DVec3::X);
-    let said = notes(&[Node::new("hall", hall()), Node::new("lamp", lamp()), Node::new("sheet", sheet)], 0.5);
+    let said =
+        notes(&[Node::new("hall", hall()), Node::new("lamp", lamp()), Node::new("sheet", sheet)], 0.25);
     assert!(judgements(&said).is_empty(), "{said:?}");
 }
 

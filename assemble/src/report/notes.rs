@@ -9,18 +9,10 @@ use crate::report::inside;
 /// More sentences of one kind than this are made one.
 const FEW: usize = 4;
 
-/// Matrices of two placements that differ by less than this, relative to their largest number, place at the same place.
-const SAME_PLACE: f64 = 1e-6;
-
 /// All sentences.
 pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node], outcome: &Outcome) -> Vec<String> {
-    let name = |k: usize| format!("`{}`", placed.instances[k].name);
-    let twice = coinciding(placed).into_iter().map(|[a, b]| {
-        format!("{} and {} coincide: the same part in the same place; remove one of them", name(a), name(b))
-    });
     standing_inside(placed, coupled)
         .into_iter()
-        .chain(twice)
         .chain(inside::notes(placed))
         .chain(checks(placed, nodes, outcome))
         .collect()
@@ -50,17 +42,4 @@ fn standing_inside(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
         named.join("; "),
         inside.len() - reused
     )]
-}
-
-/// Pairs of instances of one part in one place.
-fn coinciding(placed: &Placed) -> Vec<[usize; 2]> {
-    let numbers = |k: usize| placed.instances[k].placement.to_cols_array();
-    let size = |k: usize| numbers(k).iter().fold(0.0f64, |most, n| most.max(n.abs()));
-    let coincide = |a: usize, b: usize| {
-        let slack = SAME_PLACE * size(a).max(size(b));
-        placed.instances[a].part == placed.instances[b].part
-            && numbers(a).iter().zip(numbers(b)).all(|(a, b)| (a - b).abs() <= slack)
-    };
-    let pairs = (0..placed.instances.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
-    pairs.filter(|&[a, b]| coincide(a, b)).collect()
 }

@@ -103,28 +103,33 @@ fn cut(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>, tolerance: f64) -> Ve
 fn cut_across(scene: &mut Scene) -> Vec<String> {
     let bounds: Vec<(DVec3, DVec3)> =
         scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
-    let tolerance = planes::tolerance(bounds.iter().flat_map(|(low, high)| [low, high]));
+    let tolerances: Vec<f64> = bounds.iter().map(|(low, high)| planes::tolerance([low, high])).collect();
     let tree = BoxTree::new(&bounds);
     let (mut variants, mut covered) = (Variants::default(), Vec::new());
     for number in 0..scene.instances.len() {
         let (low, high) = bounds[number];
-        let mut near: Vec<usize> =
-            tree.meeting(low - tolerance, high + tolerance).into_iter().map(|other| other as usize).collect();
-        near.retain(|&other| other < number && meet(bounds[other], bounds[number], tolerance));
+        let widest = tolerances.iter().copied().fold(0.0, f64::max);
+        let near = tree.meeting(low - widest, high + widest).into_iter().map(|other| other as usize);
+        let tolerance = |other: usize| tolerances[number].max(tolerances[other]);
+        let is_near =
+            |&other: &usize| other < number && meet(bounds[other], bounds[number], tolerance(other));
+        let mut near: Vec<usize> = near.filter(is_near).collect();
         near.sort_unstable();
         let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
         for other in near {
-            let found = covered_by(scene, number, other, tolerance);
+            let found = covered_by(scene, number, other, tolerance(other));
+            let faces = scene.parts[scene.instances[number].part.index()].surfaces.len();
             if !found.is_empty() {
                 let [own, other] = [number, other].map(|k| &scene.instances[k].name);
-                covered.push(format!("{} of `{own}` on `{other}`", found.len()));
+                let count = if found.len() == faces { "all".to_owned() } else { found.len().to_string() };
+                covered.push(format!("{count} of `{own}` on `{other}`"));
             }
             found.into_iter().for_each(|(surface, cover)| covers.entry(surface).or_default().extend(cover));
         }
         if !covers.is_empty() {
             let scale = scale(&scene.instances[number]);
             let part = scene.instances[number].part;
-            let surfaces = cut(&scene.parts[part.index()], &covers, tolerance / scale);
+            let surfaces = cut(&scene.parts[part.index()], &covers, tolerances[number] / scale);
             scene.instances[number].part = variants.part(&mut scene.parts, part, surfaces);
         }
     }

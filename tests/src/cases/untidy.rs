@@ -32,13 +32,13 @@ pub fn cases() -> Vec<Case> {
             light(&[twice()], &Setting::metres(0.5)).row_sums()
         }),
         Case::new("a part placed twice in one place is named", 0.0, said, || {
-            noted(&placed_twice(), "coincide")
+            noted(&placed_twice(), "in one plane")
         }),
         Case::new("a part placed twice adds up to nothing more", 1e-12, sums, || {
             no_more_than_all(&placed_twice())
         }),
         Case::new("a rug in the plane of its floor is named", 0.0, said, || {
-            noted(&[Node::new("room", joined([cube(), rug()]))], "overlap in one plane")
+            noted(&[Node::new("room", joined([cube(), rug()]))], "in one plane")
         }),
         Case::new("a rug of another part in the plane of its floor", 1e-12, sums, || {
             no_more_than_all(&[Node::new("room", cube()), Node::new("rug", rug())])
@@ -54,7 +54,7 @@ pub fn cases() -> Vec<Case> {
                 solid(grey(0.5, 1.0), DVec3::ZERO, DVec3::splat(0.5)),
                 DAffine3::from_translation(DVec3::splat(1e6)),
             );
-            noted(&[Node::new("far", far)], "digits are lost")
+            noted(&[Node::new("far", far)], "places are rounded")
         }),
     ]
 }
