@@ -97,8 +97,9 @@ impl<'a> Coat<'a> {
                 emission[c] += area * shining[c];
             }
         }
-        // What no triangle covers is plain.
-        let plain = (area_and_middle(corners).0 - covered).max(0.0);
+        // What no triangle covers is plain, but for the gaps beside a bent quad.
+        let area = area_and_middle(corners).0;
+        let plain = if area - covered > BENT * area { area - covered } else { 0.0 };
         let average = |sums: Rgb| sums.map(|sum| ((sum + plain) / (covered + plain)).clamp(0.0, 1.0));
         if shares.is_empty() { ([1.0; 3], [1.0; 3]) } else { (average(reflectance), average(emission)) }
     }
