@@ -62,7 +62,7 @@ fn read_mesh(
     let mut mesh = Mesh::default();
     for primitive in source.primitives() {
         let uses = Uses::of(&primitive.material());
-        let Some(triangles) = triangles(document, &primitive, &uses, &name)? else {
+        let Some(mut triangles) = triangles(document, &primitive, &uses, &name)? else {
             notes.add(&subject, "points and lines are ignored, they have no area");
             continue;
         };
@@ -74,6 +74,10 @@ fn read_mesh(
         }
         if primitive.morph_targets().len() > 0 {
             notes.add(&subject, "morph targets are ignored");
+        }
+        if triangles.lightmap.iter().flatten().flatten().any(|place| !place.is_finite()) {
+            notes.add(&subject, "TEXCOORD_1 with numbers that are not finite is ignored");
+            triangles.lightmap = None;
         }
         let surfaces = surfaces(&triangles);
         if let Some((step, edge)) = surfaces.lost_digits {

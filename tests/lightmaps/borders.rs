@@ -1,0 +1,89 @@
+//! Texels whose borders fall on the edges of what stands in a scene: no texel holds a piece without area.
+
+use super::scene;
+use equilux_assemble::lightmap::atlas::Atlas;
+use equilux_bake::elements::ElementSize;
+use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::treecode::EXACT;
+use equilux_formats::{Instance, Material, Part, PartId, Scene, Texture, TexturedTriangle, Textures, Wrap};
+use equilux_tests::lit::{lightmap, lit_scene};
+use equilux_tests::shapes::{grey, part, rectangle, solid};
+use glam::{DAffine3, DVec3, dvec2, dvec3};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Paints all of a part in one colour of a palette, a quarter of full reflectance.
+fn painted(mut part: Part) -> Part {
+    let palette =
+        Texture { size: [2, 1], texels: vec![[255; 4], [255, 255, 255, 64]], wrap: [Wrap::Repeat; 2] };
+    let textures = Textures { reflectance: Some(Arc::new(palette)), emission: None };
+    part.materials = vec![Material { textures, ..grey(1.0, 0.0) }];
+    let halves = part.surfaces.iter().flat_map(|surface| {
+        let c = surface.corners.as_slice();
+        [[c[0], c[1], c[2]], [c[0], c[2], c[3]]]
+    });
+    let of = |corners| TexturedTriangle {
+        material: equilux_formats::MaterialId(0),
+        corners,
+        colours: [[1.0; 3]; 3],
+        reflectance_at: Some([dvec2(0.75, 0.5); 3]),
+        emission_at: None,
+    };
+    part.textured = halves.map(of).collect();
+    part
+}
+
+/// A floor of so many steps a side with a crate of so many on it, that many steps from its corner.
+fn crate_on_floor(step: f64, floor: u32, crate_: u32, at: [u32; 2]) -> Scene {
+    let rounded = |x: f64| f64::from(x as f32);
+    let length = |steps: u32| rounded(f64::from(steps) * step);
+    let ground =
+        rectangle(part(grey(0.5, 0.0)), DVec3::ZERO, DVec3::Z * length(floor), DVec3::X * length(floor));
+    let low = dvec3(length(at[0]), 0.0, length(at[1]));
+    let high = dvec3(length(at[0] + crate_), length(crate_), length(at[1] + crate_));
+    let mut scene = scene(painted(ground), &[DAffine3::IDENTITY]);
+    scene.parts.push(painted(solid(grey(0.5, 0.0), low, high)));
+    scene.instances.push(Instance { part: PartId(1), name: "crate".into(), ..scene.instances[0].clone() });
+    scene
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn texels_that_end_where_things_end_have_light_and_colour(
+        step in prop::sample::select(vec![1.0, 0.1, 0.25, 0.3, 1.0 / 3.0, 0.7]),
+        texel in prop::sample::select(vec![1.0, 2.0, 0.5, 0.25, 1.0 / 3.0]),
+        (floor, crate_) in (4..16_u32, 1..3_u32),
+        at in prop::array::uniform2(0.0..1.0_f64),
+    ) {
+        let at = at.map(|at| (at * f64::from(floor - crate_)) as u32);
+        let scene = crate_on_floor(step, floor, crate_, at);
+        let atlas = Atlas::new(&scene, Some(step * texel)).expect("an atlas");
+        let wanted = Preparation {
+            element_size: Some(ElementSize::Mesh), division: Division::Authored, resolution: EXACT, local_solver: None,
+        };
+        let lit = lit_scene(&scene, &wanted);
+        let map = lightmap(&scene, &atlas, &lit, 1.0);
+        for (number, tile) in map.tiles.iter().enumerate() {
+            let (chart, grid) = atlas.chart_of(tile);
+            let placement = scene.instances[tile.instance].placement;
+            let texels = equilux_assemble::lightmap::texels::Texels::new(chart, grid, 0..tile.size[1], tile.instance, placement);
+            let area: f64 = texels.texels.iter().map(|texel| texel.area()).sum();
+            let whole: f64 = chart.sides.iter().map(|side| side.area).sum();
+            prop_assert!((area / whole - 1.0).abs() < 1e-8, "{} m² of footprints, {} m²", area, whole);
+            for texel in &texels.texels {
+                prop_assert!(texel.pieces.iter().all(|piece| piece.area > 0.0), "{:?} in {:?}", texel, tile);
+                let index = (texel.at[1] * tile.size[0] + texel.at[0]) as usize;
+                let h = map.irradiance[number][index][0];
+                prop_assert!((0.0..=PI * (1.0 + 1e-6)).contains(&h), "{} W/m² in {:?} of {:?}", h, texel.at, tile);
+                // Nothing stands above the crate.
+                let top = tile.instance == 1 && chart.direction.y > 0.5;
+                prop_assert!(!top || (h / PI - 1.0).abs() < 1e-6, "{} W/m² on the crate", h);
+                let colour = map.radiosity(number, index)[0] / h;
+                prop_assert!(h == 0.0 || (colour - 64.0 / 255.0).abs() < 1e-12, "{} in {:?} of {:?}", colour, texel.at, tile);
+            }
+        }
+    }
+}
