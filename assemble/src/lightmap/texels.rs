@@ -66,6 +66,10 @@ impl Texels {
             let normal = placement.transform_vector3(side.normal).normalize();
             // The side's own share, whatever its plane is taken to be: so areas add up to that of the sides.
             let ratio = side.area / area(&seen) * grows;
+            if !ratio.is_finite() {
+                // A needle that the grid does not tell from a line.
+                continue;
+            }
             let Some(seen) = between(&seen, &rows) else { continue };
             into_squares(seen, |[column, row], piece| {
                 let area = area(&piece) * ratio;

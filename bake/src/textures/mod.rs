@@ -84,6 +84,8 @@ impl<'a> Coat<'a> {
         let (mut covered, mut reflectance, mut emission) = (0.0, [0.0; 3], [0.0; 3]);
         for Share { sheet, piece, .. } in &shares {
             let (area, middle) = area_and_middle(piece);
+            // What has no area but rounding has a colour all the same.
+            let area = area.max(f64::MIN_POSITIVE);
             let tint = |texture: &Option<Arc<Texture>>, places: Option<[DVec2; 3]>| {
                 let (Some(texture), Some(places)) = (texture, places) else { return [1.0; 3] };
                 self.sums[&Arc::as_ptr(texture).addr()].mean(piece, |p| sheet.at(p, places))
