@@ -39,7 +39,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
             .elements
             .iter()
             .zip(&planes)
-            .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, area: e.area, plane })
+            .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, plane })
             .collect();
         irradiance = gather.direct(&pieces, [0.0; 3]);
     }

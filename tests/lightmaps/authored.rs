@@ -152,10 +152,17 @@ fn texture_coordinates_come_through_files_as_they_were() {
 }
 
 #[test]
-fn damaged_lightmap_coordinates_are_refused() {
+fn damaged_lightmap_coordinates_are_refused_or_named() {
     let model = Model::of(&[Node::new("box", laid_out(0.02))]);
-    let damaged = model.with("/accessors/1/count", 7.into());
+    let mut infinite = model.clone();
+    let end = infinite.binary.len();
+    infinite.binary[end - 4..].copy_from_slice(&f32::INFINITY.to_le_bytes());
     let workshop = Workshop::new();
+    infinite.write(&workshop.path("scene.glb"));
+    let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
+    assert!(scene.notes.iter().any(|note| note.contains("TEXCOORD_1")), "{:?}", scene.notes);
+    assert!(scene.parts[0].surfaces.iter().all(|s| s.lightmap.is_none() && s.corners.as_slice().len() == 4));
+    let damaged = model.with("/accessors/1/count", 7.into());
     damaged.write(&workshop.path("scene.glb"));
     let error = import_scene(&workshop.path("scene.glb")).expect_err("seven places for 36 corners");
     assert!(error.to_string().contains("TEXCOORD_1"), "{error}");

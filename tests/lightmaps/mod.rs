@@ -1,7 +1,9 @@
 //! Lightmaps: what lies where in them, what light they hold, and what viewers make of the models that carry them.
 
 mod authored;
+mod borders;
 pub mod files;
+mod handed;
 mod light;
 mod places;
 mod seams;

@@ -50,7 +50,7 @@ fn direct(scene: &Lit, lights: &Lights) -> Vec<f64> {
         .elements
         .iter()
         .zip(&planes)
-        .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, area: e.area, plane })
+        .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, plane })
         .collect();
     gather.direct(&pieces, [0.0; 3]).iter().map(|h| h[0]).collect()
 }
@@ -291,7 +291,7 @@ fn a_texel_under_a_crate_is_dark_and_one_beside_it_is_not() {
             dvec3(x + size, 0.0, z + size),
             dvec3(x + size, 0.0, z),
         ];
-        let pieces = [Piece { corners: &corners, normal: DVec3::Y, area: size * size, plane: &plane }];
+        let pieces = [Piece { corners: &corners, normal: DVec3::Y, plane: &plane }];
         gather.direct(&pieces, [1.0; 3])[0][0] + gather.reflected_over(&pieces, [1.0; 3])[0][0]
     };
     for (x, z) in [(1.0, 1.0), (1.2, 1.3), (1.45, 1.45)] {

@@ -73,10 +73,8 @@ pub fn averages(lit: &Lit, elements: &[Element], resolution: Resolution) -> Vec<
     let gather = Gather::new(&lit.placed, emission, radiosity, &Lights::default(), resolution);
     let mean = mean(&lit.outcome.irradiance);
     let projected: Vec<Projected> = elements.iter().map(|e| Projected::new(e, gather.faces(), lit)).collect();
-    let pieces: Vec<Piece> = projected
-        .iter()
-        .map(|p| Piece { corners: &p.corners, normal: p.normal, area: p.area, plane: &p.plane })
-        .collect();
+    let pieces: Vec<Piece> =
+        projected.iter().map(|p| Piece { corners: &p.corners, normal: p.normal, plane: &p.plane }).collect();
     let direct = gather.direct(&pieces, mean);
     let reflected = gather.reflected_over(&pieces, mean);
     direct.iter().zip(reflected).map(|(d, r)| [d[0] + r[0], d[1] + r[1], d[2] + r[2]]).collect()
@@ -86,7 +84,6 @@ pub fn averages(lit: &Lit, elements: &[Element], resolution: Resolution) -> Vec<
 struct Projected<'a> {
     corners: Vec<DVec3>,
     normal: DVec3,
-    area: f64,
     plane: Plane<'a>,
 }
 
@@ -98,8 +95,8 @@ impl<'a> Projected<'a> {
             alike.min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a face that looks that way");
         let onto = |p: &DVec3| *p - near.normal * near.normal.dot(*p - near.centroid);
         let corners: Vec<DVec3> = element.corners.as_slice().iter().map(onto).collect();
-        let (middle, area) = centre(&corners, near.normal);
-        Self { corners, normal: near.normal, area, plane: faces.in_plane(middle, near.normal) }
+        let (middle, _) = centre(&corners, near.normal);
+        Self { corners, normal: near.normal, plane: faces.in_plane(middle, near.normal) }
     }
 }
 
@@ -114,7 +111,8 @@ fn outside(element: &Element, point: DVec3) -> f64 {
     aside + element.normal.dot(point - element.centroid).abs()
 }
 
-fn mean(values: &[Rgb]) -> Rgb {
+/// The mean of values.
+pub fn mean(values: &[Rgb]) -> Rgb {
     let sum = values.iter().fold([0.0; 3], |sum: Rgb, v| [sum[0] + v[0], sum[1] + v[1], sum[2] + v[2]]);
     sum.map(|s| s / values.len() as f64)
 }

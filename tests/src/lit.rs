@@ -1,14 +1,22 @@
 //! A scene's light in memory, in equilibrium, to be asked for more than the outputs tell.
 
+use crate::averages::mean;
 use equilux_assemble::classic::whole;
 use equilux_assemble::coupling::{Coupled, Coupler};
 use equilux_assemble::exchange::{Goal, Method, Outcome, exchange, nodes};
+use equilux_assemble::gather::Gather;
+use equilux_assemble::gather::outside::{LightUnits, lights};
+use equilux_assemble::gather::sky::Radiances;
+use equilux_assemble::lightmap::Lightmap;
+use equilux_assemble::lightmap::atlas::Atlas;
+use equilux_assemble::lightmap::light::TexelLight;
 use equilux_assemble::placed::Placed;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
 use equilux_bake::prepare::{Preparation, prepare};
-use equilux_formats::{Optics, Store};
+use equilux_bake::treecode::EXACT;
+use equilux_formats::{Optics, Scene, Store};
 use std::path::Path;
 
 /// The parts of a scene in their places, and their light.
@@ -23,23 +31,41 @@ pub struct Lit {
 
 /// The light of a scene down to an error of 1e-6; what is baked goes to a folder that is gone afterwards.
 pub fn lit(scene: &Path, wanted: &Preparation) -> Lit {
+    lit_scene(&import_scene(scene).expect("a scene"), wanted)
+}
+
+/// The same of a scene in memory.
+pub fn lit_scene(scene: &Scene, wanted: &Preparation) -> Lit {
     let folder = tempfile::tempdir().expect("a folder");
-    let (placed, coupled) = coupled(scene, folder.path(), wanted);
+    let (placed, coupled) = coupled_scene(scene, folder.path(), wanted);
     let each: Vec<Optics> = (0..placed.instances.len()).map(|k| placed.optics_of(k)).collect();
     let goal = Goal { error: 1e-6, rounds: usize::MAX };
     let outcome = exchange(&nodes(&placed, &coupled, &each), Method::Auto, goal, None, &Monitor::default());
     Lit { optics: whole(&each), placed, outcome }
 }
 
+/// The lightmap of a scene in this light and that of the sky, W/(m² sr), from all around.
+pub fn lightmap<'a>(scene: &'a Scene, atlas: &'a Atlas, lit: &Lit, sky: f64) -> Lightmap<'a> {
+    let radiances = Radiances::Uniform([sky; 3]);
+    let lights = lights(&[], LightUnits::Radiometric, Some(&radiances), &lit.placed.world);
+    let gather = Gather::new(&lit.placed, &lit.optics.emission, &lit.outcome.radiosity, &lights, EXACT);
+    let light = TexelLight::new(&gather, mean(&lit.outcome.irradiance));
+    Lightmap::new(scene, atlas, |texels| light.irradiance(texels), &Monitor::default()).expect("not stopped")
+}
+
 /// The parts of a scene in their places, and what couples them; what is baked goes to the folder `cache`.
 pub fn coupled(scene: &Path, cache: &Path, wanted: &Preparation) -> (Placed, Vec<Coupled>) {
+    coupled_scene(&import_scene(scene).expect("a scene"), cache, wanted)
+}
+
+fn coupled_scene(scene: &Scene, cache: &Path, wanted: &Preparation) -> (Placed, Vec<Coupled>) {
     let (store, monitor) = (Store::open(cache).expect("a cache"), Monitor::default());
-    let prepared = prepare(&import_scene(scene).expect("a scene"), wanted).expect("elements");
-    let resolution = wanted.resolution;
-    let oven = Oven { store: &store, file: scene, resolution, monitor: &monitor };
+    let prepared = prepare(scene, wanted).expect("elements");
+    let (resolution, file) = (wanted.resolution, scene.file.as_path());
+    let oven = Oven { store: &store, file, resolution, monitor: &monitor };
     let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked").expect("not stopped"));
     let placed = Placed::new(parts.collect(), prepared.instances);
-    let coupler = Coupler { placed: &placed, store: &store, file: scene, resolution, monitor: &monitor };
+    let coupler = Coupler { placed: &placed, store: &store, file, resolution, monitor: &monitor };
     let couple = |k: usize| coupler.couple(k).expect("coupled").expect("not stopped");
     let coupled = (0..placed.instances.len()).map(couple).collect();
     (placed, coupled)

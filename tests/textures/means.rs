@@ -3,7 +3,9 @@
 use super::*;
 use equilux_bake::bisect::Cut;
 use equilux_formats::Material;
-use glam::dvec2;
+use equilux_tests::curved::sphere;
+use equilux_tests::shapes::triangle;
+use glam::{dvec2, dvec3};
 use std::f64::consts::PI;
 
 fn checkers(x: u32, y: u32) -> [u8; 4] {
@@ -79,6 +81,54 @@ fn half_lit_texels_emit_half() {
         // Numbers in the file are f32.
         assert!((emission[1] / (2.5 * PI) - 1.0).abs() < 1e-6, "{emission:?}, expected {}", 2.5 * PI);
         assert!((reflectance[1] - 0.5).abs() < 1e-6, "{reflectance:?}, nothing is painted on it");
+    }
+}
+
+/// A ball and leaning quads whose coordinates are one point of a palette, or lie on a line or within 1e-7 there.
+#[test]
+fn faces_on_one_colour_of_a_palette_have_it_everywhere() {
+    let workshop = Workshop::new();
+    let colour = |x: u32, y: u32| [20 + 60 * x as u8, 50 * y as u8, 7, 255];
+    std::fs::write(workshop.path("palette.png"), png(4, 4, colour)).expect("an image");
+    let ball =
+        sphere(0.7, 2).into_iter().fold(part(Material { double_sided: true, ..grey(1.0, 0.0) }), triangle);
+    let shape = (0..12).fold(ball, |part, k| {
+        let (sine, cosine) = (f64::from(k) * 0.61).sin_cos();
+        rectangle(
+            part,
+            dvec3(2.0 * cosine, -0.3, 2.0 * sine),
+            dvec3(-sine, 0.1, cosine),
+            dvec3(0.03, 1.1, 0.2 * sine),
+        )
+    });
+    let shape = Model::of(&[Node::new("shape", shape)]);
+    let coordinates: [fn(Vec3) -> [f32; 2]; 4] = [
+        |_| [0.6, 0.3],
+        |_| [-1000.4, 7.3],
+        |p| [0.6 + 1e-7 * p.x.signum(), 0.3 - 1e-7 * p.y.signum()],
+        |p| [0.6 + 0.03 * p.x, 0.3 + 0.006 * p.x],
+    ];
+    for (number, at) in coordinates.into_iter().enumerate() {
+        let mut model = with_coordinates(shape.clone(), at);
+        model.json["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!(null);
+        let on = "/pbrMetallicRoughness/baseColorTexture";
+        with_image(model, on, "palette.png", json!({}), json!({})).write(&workshop.path("scene.glb"));
+        for (size, division) in [
+            (ElementSize::Mesh, Division::Authored),
+            (ElementSize::Metres(0.1), Division::Authored),
+            (ElementSize::Metres(0.3), Division::Bisect(3)),
+        ] {
+            for found in prepared(&workshop, size, division).parts.iter().flat_map(|p| &p.optics.reflectance)
+            {
+                let expected = colour(2, 1).map(linear);
+                // Linear light is kept in steps of 2^-32.
+                let off = (0..3).map(|c| (found[c] - expected[c]).abs()).fold(0.0, f64::max);
+                assert!(
+                    off < 2f64.powi(-32),
+                    "{found:?}, expected {expected:?}, coordinates {number}, {size}"
+                );
+            }
+        }
     }
 }
 

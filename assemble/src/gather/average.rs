@@ -5,7 +5,7 @@ use super::Gather;
 use super::faces::Plane;
 use super::receiver;
 use equilux_bake::equilibrium::added;
-use equilux_bake::form_factor::polygon::{Polygon, Side, clip};
+use equilux_bake::form_factor::polygon::{Polygon, part};
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
@@ -15,8 +15,6 @@ pub struct Piece<'a> {
     pub corners: &'a [DVec3],
     /// Unit normal.
     pub normal: DVec3,
-    /// Area, m².
-    pub area: f64,
     /// The faces in its plane.
     pub plane: &'a Plane<'a>,
 }
@@ -103,11 +101,14 @@ fn averages(
     let (mut points, mut weights): (Vec<Element>, Vec<(usize, f64)>) = (vec![], vec![]);
     for (place, &number) in which.iter().enumerate() {
         let piece = &pieces[number];
-        for cell in cells(piece.corners, grid) {
-            let (centre, area) = centre(&cell, piece.normal);
+        let cells: Vec<(DVec3, f64)> =
+            cells(piece.corners, grid).iter().map(|cell| centre(cell, piece.normal)).collect();
+        let whole: f64 = cells.iter().map(|(_, area)| area).sum();
+        for &(centre, area) in &cells {
             let Some(face) = piece.plane.face_at(centre) else { continue };
             points.push(receiver(centre, piece.normal, face));
-            weights.push((place, area / piece.area));
+            // A piece that is no larger than its corners are rounded by has the light of its middle.
+            weights.push((place, if whole > 0.0 { area / whole } else { 1.0 / cells.len() as f64 }));
         }
     }
     let mut sums = vec![[0.0; 3]; which.len()];
@@ -143,17 +144,9 @@ fn strips(cell: Polygon, polygon: &[DVec3], axis: DVec3, count: usize) -> Vec<Po
     for line in 1..count {
         let Some(left) = rest.take() else { break };
         let at = low + (high - low) * line as f64 / count as f64;
-        match clip(&left, |p| at - along(p)) {
-            Side::All => strips.push(left),
-            Side::None => rest = Some(left),
-            Side::Piece(strip) => {
-                strips.push(strip);
-                rest = match clip(&left, |p| along(p) - at) {
-                    Side::Piece(piece) => Some(piece),
-                    Side::All | Side::None => None,
-                };
-            }
-        }
+        let [strip, beyond] = part(&left, |p| at - along(p));
+        strips.extend(strip);
+        rest = beyond;
     }
     strips.extend(rest);
     strips

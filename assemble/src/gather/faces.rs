@@ -20,6 +20,9 @@ pub struct Plane<'a> {
 /// in the last place of the f32 numbers that glTF stores.
 const NEAR: f64 = 1e-6;
 
+/// Cosine of the angle up to which a face may be the one that a surface belongs to.
+const ALIKE: f64 = 0.5;
+
 impl Faces {
     /// The faces that are in a world now.
     pub fn of(world: &World) -> Self {
@@ -32,14 +35,22 @@ impl Faces {
         Plane { faces: vec![(face, &self.faces[face.index()])] }
     }
 
-    /// The faces in the plane through `point` with this normal or its opposite.
+    /// The faces in the plane through `point` with this normal or its opposite; the nearest face alone where corners that are
+    /// rounded leave none: a small face far from the origin is turned away from the large one that it was joined to.
     pub fn in_plane(&self, point: DVec3, normal: DVec3) -> Plane<'_> {
         let lies = |face: &Face| {
             face.normal.cross(normal).length() <= NEAR
                 && (face.corners[0] - point).dot(normal).abs() <= NEAR * self.size
         };
-        let faces = self.faces.iter().enumerate().filter(|(_, face)| lies(face));
-        Plane { faces: faces.map(|(n, face)| (FaceId::from_index(n), face)).collect() }
+        let all = || self.faces.iter().enumerate().map(|(n, face)| (FaceId::from_index(n), face));
+        let faces: Vec<_> = all().filter(|(_, face)| lies(face)).collect();
+        if !faces.is_empty() {
+            return Plane { faces };
+        }
+        let distance = |face: &Face| face.normal.dot(point - face.corners[0]).abs().max(outside(face, point));
+        let alike = all().filter(|(_, face)| face.normal.dot(normal).abs() > ALIKE);
+        let nearest = alike.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
+        Plane { faces: nearest.into_iter().collect() }
     }
 }
 

@@ -3,6 +3,7 @@
 //! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
 use super::average::{Piece, cells, centre};
+use super::receiver;
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
 use equilux_bake::outline::Plane;
@@ -86,11 +87,14 @@ impl Lamp {
 
     fn over(&self, world: &World, piece: &Piece) -> Rgb {
         let dark = [0.0; 3];
-        if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 || piece.area <= 0.0 {
+        if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 {
             return dark;
         }
-        let (middle, _) = centre(piece.corners, piece.normal);
+        let (middle, area) = centre(piece.corners, piece.normal);
         let Some(face) = piece.plane.face_at(middle) else { return dark };
+        if area == 0.0 {
+            return self.at(world, &receiver(middle, piece.normal, face));
+        }
         let mut lit: Vec<Polygon> = vec![piece.corners.iter().map(|&p| p - self.position).collect()];
         let plane = Plane { normal: piece.normal, point: piece.corners[0] };
         self.pyramids(world, piece.corners, plane, face, |pyramid| {
@@ -99,7 +103,7 @@ impl Lamp {
             lit = outside;
         });
         let sent: f64 = lit.iter().map(|polygon| self.share(polygon, piece.normal)).sum();
-        self.intensity.map(|i| i * sent / piece.area)
+        self.intensity.map(|i| i * sent / area)
     }
 
     /// Call `visit` with what every face hides of the plane that a polygon on `own` lies in, if it may stand before the polygon.

@@ -8,6 +8,7 @@ use crate::gather::faces::Plane;
 use crate::gather::{Gather, average};
 use equilux_bake::equilibrium::added;
 use equilux_formats::Rgb;
+use glam::DVec3;
 
 /// What a square's corners say of its middle may be off by this share of what is there, or of a tenth of the mean light.
 const OFF: f64 = 0.01;
@@ -30,12 +31,20 @@ impl<'a> TexelLight<'a> {
 
     /// One irradiance a texel, W/m².
     pub fn irradiance(&self, texels: &Texels) -> Vec<Rgb> {
-        let faces = self.gather.faces();
-        let planes: Vec<Plane> =
-            texels.patches.iter().map(|patch| faces.in_plane(patch.origin, patch.normal)).collect();
+        let planes = self.planes(texels);
         let direct = self.direct(texels, &planes);
         let reflected = self.reflected(texels, &planes);
         direct.into_iter().zip(reflected).map(|(a, b)| added(a, b)).collect()
+    }
+
+    /// The faces in the plane of each patch, which is where a piece of it lies: the corner of its grid may be far away.
+    fn planes(&self, texels: &Texels) -> Vec<Plane<'_>> {
+        let mut points: Vec<DVec3> = texels.patches.iter().map(|patch| patch.origin).collect();
+        for piece in texels.texels.iter().flat_map(|texel| &texel.pieces) {
+            points[piece.patch] = piece.corners[0];
+        }
+        let faces = self.gather.faces();
+        points.iter().zip(&texels.patches).map(|(&p, patch)| faces.in_plane(p, patch.normal)).collect()
     }
 
     fn direct(&self, texels: &Texels, planes: &[Plane]) -> Vec<Rgb> {
@@ -56,9 +65,7 @@ impl<'a> TexelLight<'a> {
     /// For each texel the mean direction that its light comes from, each direction weighted by the luminance of the irradiance
     /// that comes from there: as long as 1 where all comes from one, 0 where light is even all around or there is none.
     pub fn directions(&self, texels: &Texels) -> Vec<[f64; 3]> {
-        let faces = self.gather.faces();
-        let planes: Vec<Plane> =
-            texels.patches.iter().map(|patch| faces.in_plane(patch.origin, patch.normal)).collect();
+        let planes = self.planes(texels);
         let gathered = |texels: &[&Texel]| self.mean_directions(texels, &planes);
         interpolated(self.gather, texels, gathered, |_, told, found| {
             (0..3).all(|c| (told[c] - found[c]).abs() <= TURNED)
@@ -96,6 +103,5 @@ fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[average::Piece]) 
 }
 
 fn averaged<'a>(piece: &'a Piece, planes: &'a [Plane<'a>]) -> average::Piece<'a> {
-    let Piece { patch, corners, normal, area } = piece;
-    average::Piece { corners, normal: *normal, area: *area, plane: &planes[*patch] }
+    average::Piece { corners: &piece.corners, normal: piece.normal, plane: &planes[piece.patch] }
 }

@@ -166,7 +166,10 @@ fn values(
         let texels = Texels::new(chart, grid, rows.clone(), tile.instance, placement);
         let light = irradiance(&texels);
         assert_eq!(light.len(), texels.texels.len(), "one value a texel");
-        assert!(light.iter().flatten().all(|h| h.is_finite()), "irradiance must be a number: {light:?}");
+        let wrong = light.iter().position(|h| h.iter().any(|h| !h.is_finite()));
+        if let Some((texel, h)) = wrong.map(|number| (texels.texels[number].at, light[number])) {
+            panic!("irradiance must be a number, but is {h:?} in texel {texel:?} of tile {number}");
+        }
         monitor.advance(1);
         Some(texels.texels.iter().map(|texel| texel.at).zip(light).collect())
     };

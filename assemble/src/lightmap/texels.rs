@@ -4,7 +4,7 @@
 use super::chart::Chart;
 use super::grid::Grid;
 use super::patch::Patch;
-use equilux_bake::form_factor::polygon::{Polygon, Side, clip};
+use equilux_bake::form_factor::polygon::{Polygon, part};
 use equilux_formats::MaterialId;
 use glam::{DAffine3, DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -64,15 +64,19 @@ impl Texels {
             let texel = |&p: &DVec3| grid.texel_of(patch, p).extend(0.0);
             let seen: Polygon = side.corners.as_slice().iter().map(texel).collect();
             let normal = placement.transform_vector3(side.normal).normalize();
-            let turned_over = (determinant < 0.0) != (area(&seen) < 0.0);
             // The side's own share, whatever its plane is taken to be: so areas add up to that of the sides.
             let ratio = side.area / area(&seen) * grows;
-            let Some(seen) = between(seen, &rows) else { continue };
+            if !ratio.is_finite() {
+                // A needle that the grid does not tell from a line.
+                continue;
+            }
+            let Some(seen) = between(&seen, &rows) else { continue };
             into_squares(seen, |[column, row], piece| {
                 let area = area(&piece) * ratio;
                 let point = |p: &DVec3| placement.transform_point3(on_plane.point(p.truncate()));
                 let mut corners: Polygon = piece.iter().map(point).collect();
-                if turned_over {
+                // Whichever way round the layout has the side, its corners keep their order; only a mirror turns it.
+                if determinant < 0.0 {
                     corners.reverse();
                 }
                 texels.entry([row, column]).or_default().push(Piece { patch, corners, normal, area });
@@ -94,10 +98,22 @@ fn area(polygon: &[DVec3]) -> f64 {
     polygon.windows(2).skip(1).map(|edge| (edge[0] - from).cross(edge[1] - from).z).sum()
 }
 
-/// What of a polygon lies in these rows.
-fn between(polygon: Polygon, rows: &Range<u32>) -> Option<Polygon> {
-    let polygon = kept(clip(&polygon, |p| p.y - f64::from(rows.start)), &polygon)?;
-    kept(clip(&polygon, |p| f64::from(rows.end) - p.y), &polygon)
+/// A place is on a line between texels if it is no further from it than this, in texels: what rounding puts beyond a line is no
+/// piece of its own.
+const ON_LINE: f64 = 1e-9;
+
+/// How far beyond a line between texels a coordinate is.
+fn beyond(coordinate: f64, line: f64) -> f64 {
+    let beyond = coordinate - line;
+    if beyond.abs() <= ON_LINE { 0.0 } else { beyond }
+}
+
+/// What of a polygon lies in these rows; what lies on the line before them does.
+fn between(polygon: &[DVec3], rows: &Range<u32>) -> Option<Polygon> {
+    let [start, end] = [rows.start, rows.end].map(f64::from);
+    let [from_start, _] = part(polygon, |p| beyond(p.y, start));
+    let [_, inside] = part(&from_start?, |p| beyond(p.y, end));
+    inside
 }
 
 /// Cut a polygon along whole coordinates, and `emit` each piece with the square it lies in.
@@ -108,7 +124,8 @@ fn into_squares(polygon: Polygon, mut emit: impl FnMut([u32; 2], Polygon)) {
 /// Cut a polygon along whole coordinates of one axis.
 fn slices(polygon: Polygon, axis: usize, mut emit: impl FnMut(u32, Polygon)) {
     let reach = |pick: fn(f64, f64) -> f64, start: f64| polygon.iter().map(|p| p[axis]).fold(start, pick);
-    let (first, end) = (reach(f64::min, f64::INFINITY).floor(), reach(f64::max, f64::NEG_INFINITY).ceil());
+    let (low, high) = (reach(f64::min, f64::INFINITY), reach(f64::max, f64::NEG_INFINITY));
+    let (first, end) = ((low + ON_LINE).floor(), (high - ON_LINE).ceil());
     let mut rest = Some(polygon);
     let mut line = first;
     while let Some(whole) = rest.take() {
@@ -117,19 +134,11 @@ fn slices(polygon: Polygon, axis: usize, mut emit: impl FnMut(u32, Polygon)) {
         if line >= end {
             return emit(number, whole);
         }
-        let below = kept(clip(&whole, |p| line - p[axis]), &whole);
-        rest = kept(clip(&whole, |p| p[axis] - line), &whole);
+        let [after, below] = part(&whole, |p| beyond(p[axis], line));
         if let Some(below) = below {
             emit(number, below);
         }
-    }
-}
-
-fn kept(side: Side, whole: &Polygon) -> Option<Polygon> {
-    match side {
-        Side::All => Some(whole.clone()),
-        Side::None => None,
-        Side::Piece(piece) => Some(piece),
+        rest = after;
     }
 }
 

@@ -64,7 +64,7 @@ fn read_mesh(
     let mut mesh = Mesh::default();
     for primitive in source.primitives() {
         let uses = Uses::of(&primitive.material());
-        let Some(triangles) = triangles(document, &primitive, &uses, &name)? else {
+        let Some(mut triangles) = triangles(document, &primitive, &uses, &name)? else {
             notes.add(&subject, "points and lines are ignored, they have no area");
             continue;
         };
@@ -76,6 +76,10 @@ fn read_mesh(
         }
         if [uses.reflectance, uses.emission].iter().flatten().any(|of| !of.is_served_by(&primitive)) {
             notes.add(&subject, "a texture without coordinates on the mesh is ignored");
+        }
+        if triangles.lightmap.iter().flatten().flatten().any(|place| !place.is_finite()) {
+            notes.add(&subject, "TEXCOORD_1 with numbers that are not finite is ignored");
+            triangles.lightmap = None;
         }
         let surfaces = surfaces(&triangles);
         mesh.step = mesh.step.max(surfaces.step);

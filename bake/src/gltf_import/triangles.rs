@@ -42,7 +42,6 @@ pub(super) fn triangles(
     };
     let left_over = if primitive.mode() == Mode::Triangles { order.len() % 3 } else { 0 };
     let lightmap = texture_coordinates(document, primitive, 1, positions.len(), mesh)?;
-    let lightmap = lightmap.filter(|places| places.iter().all(|place| place.is_finite()));
     let colouring = Colouring::of(document, primitive, uses, positions.len(), mesh)?;
     let vertices_of = || corners_of(order.len()).map(|corners| corners.map(|corner| order[corner]));
     let lightmap =

@@ -5,15 +5,16 @@
 //! whatever is painted on them.
 
 mod mean;
+mod sums;
 
 use crate::form_factor::polygon::{Polygon, Side, clip};
 use crate::visibility::BoxTree;
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
-use mean::Sums;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
+use sums::Sums;
 
 /// How far a quad made of two triangles may lie off one of them, in its longest edges: twice what the importer takes for flat.
 const BENT: f64 = 2e-4;
@@ -84,6 +85,8 @@ impl<'a> Coat<'a> {
         let (mut covered, mut reflectance, mut emission) = (0.0, [0.0; 3], [0.0; 3]);
         for Share { sheet, piece, .. } in &shares {
             let (area, middle) = area_and_middle(piece);
+            // What has no area but rounding has a colour all the same.
+            let area = area.max(f64::MIN_POSITIVE);
             let tint = |texture: &Option<Arc<Texture>>, places: Option<[DVec2; 3]>| {
                 let (Some(texture), Some(places)) = (texture, places) else { return [1.0; 3] };
                 self.sums[&Arc::as_ptr(texture).addr()].mean(piece, |p| sheet.at(p, places))
@@ -97,8 +100,9 @@ impl<'a> Coat<'a> {
                 emission[c] += area * shining[c];
             }
         }
-        // What no triangle covers is plain.
-        let plain = (area_and_middle(corners).0 - covered).max(0.0);
+        // What no triangle covers is plain, but for the gaps beside a bent quad.
+        let area = area_and_middle(corners).0;
+        let plain = if area - covered > BENT * area { area - covered } else { 0.0 };
         let average = |sums: Rgb| sums.map(|sum| ((sum + plain) / (covered + plain)).clamp(0.0, 1.0));
         if shares.is_empty() { ([1.0; 3], [1.0; 3]) } else { (average(reflectance), average(emission)) }
     }
