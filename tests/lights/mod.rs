@@ -2,6 +2,7 @@
 
 mod points;
 mod skies;
+mod spots;
 
 mod units;
 

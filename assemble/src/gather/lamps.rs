@@ -2,7 +2,8 @@
 //! a pyramid from the light, what is left of the polygon after all pyramids is lit, and a point of intensity I sends
 //! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
-use super::average::{Piece, cells, centre};
+use super::average::{Piece, centre};
+use super::cone::Cone;
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
 use equilux_bake::outline::Plane;
@@ -23,23 +24,8 @@ pub struct Lamp {
     pub cone: Option<Cone>,
 }
 
-/// The cone of a spot, as KHR_lights_punctual has it.
-#[derive(Debug, Clone)]
-pub struct Cone {
-    direction: DVec3,
-    /// Slope and offset of the falloff in the cosine.
-    scale: f64,
-    offset: f64,
-}
-
 /// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-6.
 const FAR: f64 = 1e6;
-
-/// The cosines of a spot's cones are taken to differ by at least this, as KHR_lights_punctual does against division by zero.
-const SHARP: f64 = 1e-9;
-
-/// Polygons that a spot's edge may pass through are cut this often along each side.
-const CUTS: usize = 4;
 
 impl Lamp {
     /// The lamp of a light of a scene around `centre` of this `size`, metres.
@@ -48,11 +34,7 @@ impl Lamp {
         match light.kind {
             LightKind::Point => point,
             LightKind::Spot { inner, outer } => {
-                let scale = 1.0 / (inner.cos() - outer.cos()).max(SHARP);
-                Self {
-                    cone: Some(Cone { direction: light.direction, scale, offset: -outer.cos() * scale }),
-                    ..point
-                }
+                Self { cone: Some(Cone::new(light.direction, inner, outer)), ..point }
             }
             LightKind::Directional => {
                 let distance = FAR * size;
@@ -129,22 +111,12 @@ impl Lamp {
 
     /// ∫ I(ω)/I dω over a polygon as the light sees it.
     fn share(&self, polygon: &[DVec3], normal: DVec3) -> f64 {
-        let Some(cone) = &self.cone else { return solid_angle(polygon) };
-        let pieces = cells(polygon, CUTS);
-        pieces.iter().map(|cell| solid_angle(cell) * cone.falloff(centre(cell, normal).0)).sum()
-    }
-}
-
-impl Cone {
-    /// The share of the intensity in a direction, of any length.
-    fn falloff(&self, to: DVec3) -> f64 {
-        let share = self.direction.dot(to) / to.length() * self.scale + self.offset;
-        share.clamp(0.0, 1.0).powi(2)
+        self.cone.as_ref().map_or_else(|| solid_angle(polygon), |cone| cone.share(polygon, normal))
     }
 }
 
 /// The solid angle of a convex polygon seen from the origin, sr.
-fn solid_angle(polygon: &[DVec3]) -> f64 {
+pub(super) fn solid_angle(polygon: &[DVec3]) -> f64 {
     let a = polygon[0];
     let triangle = |b: DVec3, c: DVec3| {
         let (la, lb, lc) = (a.length(), b.length(), c.length());

@@ -10,6 +10,7 @@
 //! ```
 
 pub mod average;
+mod cone;
 mod directions;
 pub mod faces;
 mod glowing;
