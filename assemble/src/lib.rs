@@ -43,6 +43,7 @@ mod steps;
 #[cfg(feature = "cli")]
 pub mod sweep;
 pub mod table;
+mod unlit;
 mod warm;
 #[cfg(feature = "cli")]
 pub mod watch;

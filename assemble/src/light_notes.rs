@@ -1,8 +1,9 @@
 //! Sentences about what shines into a scene, known before anything is computed: in which units the intensities of lamps are
-//! taken, whether they can be meant so, and whether anything shines at all.
+//! taken, whether they can be meant so, which lamps stand in closed meshes, and whether anything shines at all.
 
 use crate::gather::outside::{LUMENS_PER_WATT, in_watts};
 use crate::gather::sky::Sky;
+use equilux_bake::enclosed_lamps::{EnclosedLamp, enclosed_lamps};
 use equilux_formats::{LightKind, LightUnits, PunctualLight, Scene};
 use std::f64::consts::PI;
 
@@ -21,10 +22,27 @@ pub fn light_notes(scene: &Scene, units: Option<LightUnits>, sky: Option<&Sky>) 
                 .to_owned(),
         ];
     }
-    match units {
+    let of_units = match units {
         Some(_) => vec![],
         None => units_taken(&scene.lights).into_iter().chain(unbelievable(&scene.lights)).collect(),
-    }
+    };
+    let enclosed = enclosed_lamps(scene);
+    let sentences = enclosed.iter().take(NAMED).map(|EnclosedLamp { lamp, shell }| {
+        format!(
+            "lamp `{lamp}` stands inside `{shell}`, which is closed and lets no light through here, whatever its alpha: it \
+             lights nothing outside; remove `{shell}`, open it, or let it emit instead"
+        )
+    });
+    let more = more(enclosed.len(), "lamps inside closed meshes");
+    of_units.into_iter().chain(sentences).chain(more).collect()
+}
+
+/// So many lamps of a kind are named.
+pub const NAMED: usize = 3;
+
+/// A sentence about those of `count` that are not named.
+pub fn more(count: usize, what: &str) -> Option<String> {
+    count.checked_sub(NAMED).filter(|&rest| rest > 0).map(|rest| format!("{rest} more {what}"))
 }
 
 fn is_dark(scene: &Scene, sky: Option<&Sky>) -> bool {

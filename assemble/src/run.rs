@@ -19,6 +19,7 @@ use crate::proof::sample::ExactRows;
 use crate::render::{Reference, Shot};
 use crate::report::summary::HIDDEN_SHELLS;
 use crate::report::{Report, Run, cpu_seconds, peak_rss, summary};
+use crate::unlit::unlit_notes;
 use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
@@ -175,6 +176,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
     let lights = light_notes(&scene, job.light_units, job.sky.as_ref());
+    let lights = [lights, unlit_notes(&scene, &direct.unlit, placed, &nodes)].concat();
     report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
 }

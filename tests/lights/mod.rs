@@ -1,9 +1,9 @@
 //! Lights that are no surfaces: closed forms for lamps, suns and skies, what they do to the scene, and what they cost.
 
+mod enclosed;
 mod points;
 mod skies;
 mod spots;
-
 mod units;
 
 use equilux_assemble::gather::average::Piece;

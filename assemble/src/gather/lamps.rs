@@ -12,10 +12,15 @@ use equilux_bake::world::World;
 use equilux_formats::{Element, FaceId, LightKind, PunctualLight, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// A light without extent.
 #[derive(Debug, Clone)]
 pub struct Lamp {
+    /// Its name.
+    pub name: String,
+    /// At most this arrives at the scene, W.
+    pub power: Rgb,
     /// Where it stands, metres; parallel light stands very far away.
     pub position: DVec3,
     /// Intensity, W/sr, linear RGB.
@@ -30,18 +35,21 @@ const FAR: f64 = 1e6;
 impl Lamp {
     /// The lamp of a light of a scene around `centre` of this `size`, metres.
     pub fn of(light: &PunctualLight, centre: DVec3, size: f64) -> Self {
-        let point = Self { position: light.position, intensity: light.intensity, cone: None };
-        match light.kind {
-            LightKind::Point => point,
-            LightKind::Spot { inner, outer } => {
-                Self { cone: Some(Cone::new(light.direction, inner, outer)), ..point }
-            }
+        let far = FAR * size;
+        let (position, intensity) = match light.kind {
             LightKind::Directional => {
-                let distance = FAR * size;
-                let position = centre - light.direction * distance;
-                Self { position, intensity: light.intensity.map(|lux| lux * distance * distance), ..point }
+                (centre - light.direction * far, light.intensity.map(|lux| lux * far * far))
             }
-        }
+            LightKind::Point | LightKind::Spot { .. } => (light.position, light.intensity),
+        };
+        let cone = match light.kind {
+            LightKind::Spot { inner, outer } => Some(Cone::new(light.direction, inner, outer)),
+            LightKind::Point | LightKind::Directional => None,
+        };
+        // The solid angle of a ball around the scene.
+        let distance = (position - centre).length();
+        let angle = if distance <= size { 4.0 * PI } else { PI * (size / distance).powi(2) };
+        Self { name: light.name.clone(), power: intensity.map(|i| i * angle), position, intensity, cone }
     }
 
     /// The average irradiance of pieces, W/m².

@@ -1,13 +1,13 @@
 //! What shines into a scene but is none of its surfaces: the lights of its file, and a sky.
 
-use super::Lights;
 use super::lamps::Lamp;
 use super::sky::{Radiances, dome};
+use super::{Lights, Sun};
 use equilux_bake::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
 use equilux_bake::world::World;
 use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, LightKind, LightUnits, MaterialId, PunctualLight, Rgb,
+    Corners, Element, Face, FaceId, Geometry, LightKind, LightUnits, MaterialId, PunctualLight,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -64,8 +64,8 @@ pub fn in_watts(light: &PunctualLight, units: Option<LightUnits>) -> PunctualLig
     PunctualLight { intensity, units: LightUnits::Radiometric, ..light.clone() }
 }
 
-/// A sun as a polygon far away, and what it sends: as much as parallel light of its intensity where it stands upright.
-fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> (Geometry, Rgb) {
+/// A sun as polygons far away that send as much as parallel light of its intensity where it stands upright.
+fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> Sun {
     let distance = FAR * size;
     let middle = centre - light.direction * distance;
     let (u, v) = light.direction.any_orthonormal_pair();
@@ -101,5 +101,10 @@ fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> (Geometry, Rgb) {
         })
         .sum();
     let elements = order.into_iter().map(|i| elements[i]).collect();
-    (Geometry { elements, faces: vec![Face::new(outline)], clusters }, light.intensity.map(|e| e / seen))
+    Sun {
+        name: light.name.clone(),
+        polygons: Geometry { elements, faces: vec![Face::new(outline)], clusters },
+        radiosity: light.intensity.map(|e| e / seen),
+        power: light.intensity.map(|e| e * PI * size * size),
+    }
 }
