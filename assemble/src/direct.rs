@@ -1,16 +1,17 @@
-//! The irradiance D of a scene's elements from lights that are no elements. In go the parts in their places and the lights;
-//! out comes D, W/m². Lamps and suns are averaged over each element, and cost no form factor that is kept; what the sky's
+//! The irradiance D of a scene's elements from lights that are no elements: parts in their places, lights → D, W/m². Lamps and
+//! suns are averaged over each element, and cost no form factor that is kept; what the sky's
 //! cells are to each element is kept in the cache, so that another sky costs nothing.
 
 use crate::coupling::Coupler;
 use crate::gather::average::Piece;
 use crate::gather::faces::Plane;
 use crate::gather::{Gather, Lights};
+use crate::placed::Placed;
 use equilux_bake::cached::cached;
 use equilux_bake::equilibrium::{added, apply};
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Optics, Result, Rgb, Rows};
+use equilux_formats::{Element, Optics, Result, Rgb, Rows};
 
 /// What lights send to elements.
 pub struct Direct {
@@ -18,31 +19,26 @@ pub struct Direct {
     pub irradiance: Vec<Vec<Rgb>>,
     /// Form factors computed for the sky.
     pub computed: usize,
+    /// The names of the lamps and suns of which nothing arrives.
+    pub unlit: Vec<String>,
 }
+
+/// Of a lamp's power this share is nothing: what rounding leaves at the edges of occluders.
+const NOTHING: f64 = 1e-9;
 
 /// D of all elements. None if the monitor was stopped.
 pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
     let placed = coupler.placed;
     let dark = vec![[0.0; 3]; placed.world.elements.len()];
     if lights.is_empty() {
-        return Ok(Some(Direct { irradiance: placed.split(&dark), computed: 0 }));
+        return Ok(Some(Direct { irradiance: placed.split(&dark), computed: 0, unlit: vec![] }));
     }
-    let mut irradiance = dark.clone();
-    if !(lights.lamps.is_empty() && lights.suns.is_empty()) {
+    let Arriving { irradiance, unlit } = if lights.lamps.is_empty() && lights.suns.is_empty() {
+        Arriving { irradiance: dark, unlit: vec![] }
+    } else {
         coupler.monitor.begin("light of lamps", 1);
-        let sharp = Lights { sky: None, ..lights.clone() };
-        let gather = Gather::new(placed, &dark, &dark, &sharp, EXACT);
-        let planes: Vec<Plane> =
-            placed.world.elements.iter().map(|e| gather.faces().plane_of(e.face)).collect();
-        let pieces: Vec<Piece> = placed
-            .world
-            .elements
-            .iter()
-            .zip(&planes)
-            .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, plane })
-            .collect();
-        irradiance = gather.direct(&pieces, [0.0; 3]);
-    }
+        of_lamps(placed, lights)
+    };
     let mut irradiance = placed.split(&irradiance);
     let mut computed = 0;
     if let Some((dome, sends)) = &lights.sky {
@@ -55,7 +51,53 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
             own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum = added(*sum, h));
         }
     }
-    Ok(Some(Direct { irradiance, computed }))
+    Ok(Some(Direct { irradiance, computed, unlit }))
+}
+
+/// What arrives of lamps and suns.
+struct Arriving {
+    /// W/m², one an element of the world.
+    irradiance: Vec<Rgb>,
+    /// The names of those of which nothing arrives.
+    unlit: Vec<String>,
+}
+
+impl Arriving {
+    /// Adds the irradiance of these elements from a lamp that could send them at most `power`, W.
+    fn add(&mut self, name: &str, power: Rgb, elements: &[Element], irradiance: &[Rgb]) {
+        let mut arrived = [0.0; 3];
+        for ((sum, element), &h) in self.irradiance.iter_mut().zip(elements).zip(irradiance) {
+            *sum = added(*sum, h);
+            arrived = added(arrived, h.map(|h| h * element.area));
+        }
+        let is_lost = |(arrived, power): (f64, f64)| arrived <= NOTHING * power;
+        if power != [0.0; 3] && arrived.into_iter().zip(power).all(is_lost) {
+            self.unlit.push(name.to_owned());
+        }
+    }
+}
+
+/// The light of lamps and suns, averaged over each element.
+fn of_lamps(placed: &Placed, lights: &Lights) -> Arriving {
+    let elements = &placed.world.elements;
+    let dark = vec![[0.0; 3]; elements.len()];
+    let mut arriving = Arriving { irradiance: dark.clone(), unlit: vec![] };
+    let gather = |lights: &Lights| Gather::new(placed, &dark, &dark, lights, EXACT);
+    let none = gather(&Lights::default());
+    let planes: Vec<Plane> = elements.iter().map(|e| none.faces().plane_of(e.face)).collect();
+    let piece = |(e, plane)| {
+        let e: &Element = e;
+        Piece { corners: e.corners.as_slice(), normal: e.normal, plane }
+    };
+    let pieces: Vec<Piece> = elements.iter().zip(&planes).map(piece).collect();
+    for lamp in &lights.lamps {
+        arriving.add(&lamp.name, lamp.power, elements, &lamp.irradiance(none.world(), &pieces));
+    }
+    for sun in &lights.suns {
+        let alone = gather(&Lights { suns: vec![sun.clone()], ..Lights::default() });
+        arriving.add(&sun.name, sun.power, elements, &alone.direct(&pieces, [0.0; 3]));
+    }
+    arriving
 }
 
 /// The form factors of an instance's elements to the sky's cells, and how many were computed.

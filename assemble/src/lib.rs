@@ -22,6 +22,7 @@ pub mod exposure;
 pub mod gather;
 pub mod gltf_export;
 pub mod hull;
+mod light_notes;
 pub mod lightmap;
 #[cfg(feature = "cli")]
 pub mod live;
@@ -42,6 +43,7 @@ mod steps;
 #[cfg(feature = "cli")]
 pub mod sweep;
 pub mod table;
+mod unlit;
 mod warm;
 #[cfg(feature = "cli")]
 pub mod watch;

@@ -6,8 +6,8 @@ use crate::direct::with_direct;
 use crate::equation::Equation;
 use crate::exchange::{Goal, Method, Node, Outcome, exchange_observed};
 use crate::explain::explained;
-use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
+use crate::light_notes::light_notes;
 use crate::lightmap::Wanted;
 use crate::lightmap::atlas::Atlas;
 use crate::observer::{Observer, Unobserved};
@@ -19,13 +19,14 @@ use crate::proof::sample::ExactRows;
 use crate::render::{Reference, Shot};
 use crate::report::summary::HIDDEN_SHELLS;
 use crate::report::{Report, Run, cpu_seconds, peak_rss, summary};
+use crate::unlit::unlit_notes;
 use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Preparation, lost_digits_note, prepare};
 use equilux_bake::{depfile, stamp};
-use equilux_formats::{Result, Scene, Store, Swept};
+use equilux_formats::{LightUnits, Result, Scene, Store, Swept};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -64,8 +65,8 @@ pub struct Job {
     pub verify: bool,
     /// Whether to start from the light of the last such run of the scene, and to keep this one's for the next.
     pub warm: bool,
-    /// What the intensities of the file's lights mean.
-    pub light_units: LightUnits,
+    /// What the intensities of the file's lights mean; none for what each file suggests.
+    pub light_units: Option<LightUnits>,
     /// What shines from all around; none for darkness.
     pub sky: Option<Sky>,
     /// Which rounds get pictures.
@@ -174,7 +175,9 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
-    report.notes = [scene.notes, damage_notes(&store), report.notes, notes, last].concat();
+    let lights = light_notes(&scene, job.light_units, job.sky.as_ref());
+    let lights = [lights, unlit_notes(&scene, &direct.unlit, placed, &nodes)].concat();
+    report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
 }
 

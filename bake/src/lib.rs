@@ -13,6 +13,7 @@ pub mod cuts;
 pub mod depfile;
 mod disjoint_sets;
 pub mod elements;
+pub mod enclosed_lamps;
 pub mod equilibrium;
 pub mod form_factor;
 pub mod gltf_import;

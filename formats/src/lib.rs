@@ -28,7 +28,7 @@ pub use geometry::{Corners, Element, Face, Geometry, Optics, Tints};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
 pub use rows::{Precision, Rgb, RowGroup, Rows, SINGLE_ROUNDING};
-pub use scene::{Camera, Instance, LightKind, PunctualLight, Repainted, Scene};
+pub use scene::{Camera, Instance, LightKind, LightUnits, PunctualLight, Repainted, Scene};
 pub use solution::{Solution, SolvedInstance};
 pub use store::{Lookup, Store, Swept, Tally, Turn};
 pub use stored::Stored;

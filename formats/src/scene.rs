@@ -102,10 +102,24 @@ pub struct PunctualLight {
     pub direction: DVec3,
     /// Linear RGB × intensity: candela for points and spots, lux for directional lights.
     pub intensity: [f64; 3],
+    /// What these numbers mean, as far as the file tells by naming the program that wrote it.
+    pub units: LightUnits,
     /// Which of the extension's three lights it is.
     pub kind: LightKind,
     /// How wide a directional light looks, radians; 0 for parallel rays (`extras.angular_diameter`, degrees).
     pub angle: f64,
+}
+
+/// What the intensities of a file's lights mean. Radiances of surfaces are W/(m² sr) in all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum LightUnits {
+    /// W/sr and W/m², number for number what glTF calls candela and lux.
+    Radiometric,
+    /// Candela and lux of light of 683 lm/W, as Blender writes them by default (lighting mode Standard).
+    Photometric,
+    /// Watts of whole lamps, as Blender writes them in lighting mode Raw, and did before version 3.4: W/(4π) to each sr.
+    /// Parallel light is W/m².
+    BlenderRaw,
 }
 
 /// The three lights of KHR_lights_punctual.

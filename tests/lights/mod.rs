@@ -1,18 +1,21 @@
 //! Lights that are no surfaces: closed forms for lamps, suns and skies, what they do to the scene, and what they cost.
 
+mod enclosed;
 mod points;
 mod skies;
+mod spots;
+mod units;
 
 use equilux_assemble::gather::average::Piece;
 use equilux_assemble::gather::faces::Plane;
-use equilux_assemble::gather::outside::{LightUnits, lights};
+use equilux_assemble::gather::outside::lights;
 use equilux_assemble::gather::sky::Sky;
 use equilux_assemble::gather::{Gather, Lights};
 use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{LightKind, Part, PunctualLight, Rgb};
+use equilux_formats::{LightKind, LightUnits, Part, PunctualLight, Rgb};
 use equilux_tests::lit::{Lit, lit};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, joined, part, rectangle, room, solid};
@@ -23,7 +26,8 @@ use std::f64::consts::PI;
 
 fn light(kind: LightKind, position: DVec3, direction: DVec3, intensity: f64) -> PunctualLight {
     let direction = direction.normalize();
-    PunctualLight { name: "light".into(), position, direction, intensity: [intensity; 3], kind, angle: 0.0 }
+    let (name, intensity, units) = ("light".into(), [intensity; 3], LightUnits::Radiometric);
+    PunctualLight { name, position, direction, intensity, units, kind, angle: 0.0 }
 }
 
 /// The parts in their places, elements of `size` metres.
@@ -56,7 +60,7 @@ fn direct(scene: &Lit, lights: &Lights) -> Vec<f64> {
 }
 
 fn of_file(scene: &Lit, sources: &[PunctualLight]) -> Lights {
-    lights(sources, LightUnits::Radiometric, None, &scene.placed.world)
+    lights(sources, None, None, &scene.placed.world)
 }
 
 /// Solid angle of the rectangle 0..a × 0..b at height h over its corner, sr.

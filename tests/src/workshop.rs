@@ -4,7 +4,6 @@ use crate::model::{Model, Node};
 use crate::program::program;
 use assert_cmd::Command;
 use equilux_assemble::exchange::{Goal, Method};
-use equilux_assemble::gather::outside::LightUnits;
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
 use equilux_assemble::run::{Job, Pictures, run};
@@ -84,7 +83,7 @@ impl Workshop {
             warm: false,
             pictures: Pictures::Rounds,
             lightmaps: None,
-            light_units: LightUnits::Radiometric,
+            light_units: None,
             sky: None,
             points: None,
             shot: None,

@@ -7,7 +7,6 @@ mod target;
 mod texels;
 
 use equilux_assemble::exchange::{Goal, Method};
-use equilux_assemble::gather::outside::LightUnits;
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
@@ -87,7 +86,7 @@ fn assembled(scene: &Path) -> Table {
         elements: Some(elements.clone()),
         depfile: None,
         lightmaps: None,
-        light_units: LightUnits::Radiometric,
+        light_units: None,
         sky: None,
         cache_limit: None,
     };

@@ -37,9 +37,9 @@ pub struct Arguments {
     /// What shines from all around, as without `classic`
     #[arg(long, value_name = "RADIANCE|FILE", value_parser = sky)]
     sky: Option<Sky>,
-    /// What the intensities of the file's lights mean
-    #[arg(long, value_name = "UNITS", default_value = "radiometric")]
-    light_units: Intensities,
+    /// What the intensities of the file's lights mean, as without `classic`
+    #[arg(long, value_name = "UNITS")]
+    light_units: Option<Intensities>,
     /// Threads to use [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     threads: Option<u32>,
@@ -72,7 +72,7 @@ impl Arguments {
             scene: self.scene.clone(),
             element_size: self.element_size,
             way,
-            light_units: self.light_units.into(),
+            light_units: self.light_units.map(Into::into),
             sky: self.sky.clone(),
             out: self.out.clone(),
             points: self.points.clone(),
@@ -90,6 +90,7 @@ impl Report {
             "{}: {} elements, the classic way: light in {:.2} s (form factors {:.2} s summed over threads{shots}), matrix of {} bytes\n",
             self.scene, self.elements, seconds.solve, seconds.form_factors, self.bytes.stored
         );
+        self.notes.iter().for_each(|note| text += &format!("note: {note}\n"));
         self.outputs.iter().for_each(|path| text += &format!("{path}\n"));
         text
     }

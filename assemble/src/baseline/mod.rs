@@ -11,8 +11,9 @@ use crate::classic::{whole, whole_optics};
 use crate::coupling::Coupler;
 use crate::direct::{direct, driven, with_direct};
 use crate::gather::Gather;
-use crate::gather::outside::{LightUnits, lights};
+use crate::gather::outside::lights;
 use crate::gather::sky::Sky;
+use crate::light_notes::light_notes;
 use crate::outputs::{POINTS, unusable};
 use crate::placed::Placed;
 use crate::points::{self, Place, PointLight};
@@ -25,7 +26,9 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, geometry_manifest};
 use equilux_bake::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Answers, BakedPart, Error, LocalEquilibrium, Optics, Result, Rgb, Rows, Store};
+use equilux_formats::{
+    Answers, BakedPart, Error, LightUnits, LocalEquilibrium, Optics, Result, Rgb, Rows, Store,
+};
 use glam::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -51,8 +54,8 @@ pub struct Job {
     pub element_size: Option<ElementSize>,
     /// How.
     pub way: Way,
-    /// What the intensities of the file's lights mean.
-    pub light_units: LightUnits,
+    /// What the intensities of the file's lights mean; none for what each file suggests.
+    pub light_units: Option<LightUnits>,
     /// What shines from all around.
     pub sky: Option<Sky>,
     /// The folder that gets `<scene>/`.
@@ -74,6 +77,8 @@ pub struct Report {
     pub bytes: Bytes,
     /// Elements that shot, one after the other, if it was progressive refinement.
     pub shots: Option<usize>,
+    /// What a person should know of the scene's light.
+    pub notes: Vec<String>,
     /// What was written.
     pub outputs: Vec<String>,
 }
@@ -154,6 +159,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
         None => vec![],
     };
     Ok(Report {
+        notes: light_notes(&scene, job.light_units, job.sky.as_ref()),
         scene: scene.name,
         elements: placed.world.elements.len(),
         seconds: Seconds {

@@ -2,13 +2,13 @@
 
 use super::values;
 use crate::exchange::{Goal, Method};
-use crate::gather::outside::LightUnits;
 use crate::gather::sky::Sky;
 use crate::lightmap::{Units, Wanted};
 use crate::proof::sample::ExactRows;
 use crate::run::{Job, Pictures};
 use clap::{Args, ValueEnum};
 use equilux_bake::cli::options::SceneOptions;
+use equilux_formats::LightUnits;
 use std::path::PathBuf;
 
 /// A scene, and how to assemble it.
@@ -48,9 +48,10 @@ pub struct Assembly {
     /// .hdr or .exr, whose middle is -Z, right of that +X, and top +Y
     #[arg(long, value_name = "RADIANCE|FILE", value_parser = values::sky)]
     sky: Option<Sky>,
-    /// What the intensities of the file's lights mean
-    #[arg(long, value_name = "UNITS", default_value = "radiometric")]
-    light_units: Intensities,
+    /// What the intensities of the file's lights mean [default: what Blender's exporter writes if that wrote the file, else
+    /// radiometric]
+    #[arg(long, value_name = "UNITS")]
+    light_units: Option<Intensities>,
     /// Write lightmaps: lightmap.exr and .png, what lies where in them, and models that carry them
     #[arg(long)]
     lightmaps: bool,
@@ -107,9 +108,9 @@ enum Drawn {
 pub enum Intensities {
     /// W/sr and W/m², number for number what the file calls candela and lux
     Radiometric,
-    /// Candela and lux of light of 683 lm/W: what Blender writes by default
+    /// Candela and lux of light of 683 lm/W: what Blender writes by default (Standard)
     Photometric,
-    /// Watts of whole lamps: what Blender writes with `Raw`
+    /// Watts of whole lamps: what Blender writes with `Raw`, and did before version 3.4
     BlenderRaw,
 }
 
@@ -160,7 +161,7 @@ impl Assembly {
                 Drawn::Last => Pictures::Last,
                 Drawn::None => Pictures::None,
             },
-            light_units: self.light_units.into(),
+            light_units: self.light_units.map(Into::into),
             sky: self.sky.clone(),
             lightmaps: self.lightmaps.then_some(Wanted {
                 texel_size: self.texel_size,

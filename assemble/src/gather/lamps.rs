@@ -2,7 +2,8 @@
 //! a pyramid from the light, what is left of the polygon after all pyramids is lit, and a point of intensity I sends
 //! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
-use super::average::{Piece, cells, centre};
+use super::average::{Piece, centre};
+use super::cone::Cone;
 use super::receiver;
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
@@ -12,10 +13,15 @@ use equilux_bake::world::World;
 use equilux_formats::{Element, FaceId, LightKind, PunctualLight, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 
 /// A light without extent.
 #[derive(Debug, Clone)]
 pub struct Lamp {
+    /// Its name.
+    pub name: String,
+    /// At most this arrives at the scene, W.
+    pub power: Rgb,
     /// Where it stands, metres; parallel light stands very far away.
     pub position: DVec3,
     /// Intensity, W/sr, linear RGB.
@@ -24,43 +30,27 @@ pub struct Lamp {
     pub cone: Option<Cone>,
 }
 
-/// The cone of a spot, as KHR_lights_punctual has it.
-#[derive(Debug, Clone)]
-pub struct Cone {
-    direction: DVec3,
-    /// Slope and offset of the falloff in the cosine.
-    scale: f64,
-    offset: f64,
-}
-
 /// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-6.
 const FAR: f64 = 1e6;
-
-/// The cosines of a spot's cones are taken to differ by at least this, as KHR_lights_punctual does against division by zero.
-const SHARP: f64 = 1e-9;
-
-/// Polygons that a spot's edge may pass through are cut this often along each side.
-const CUTS: usize = 4;
 
 impl Lamp {
     /// The lamp of a light of a scene around `centre` of this `size`, metres.
     pub fn of(light: &PunctualLight, centre: DVec3, size: f64) -> Self {
-        let point = Self { position: light.position, intensity: light.intensity, cone: None };
-        match light.kind {
-            LightKind::Point => point,
-            LightKind::Spot { inner, outer } => {
-                let scale = 1.0 / (inner.cos() - outer.cos()).max(SHARP);
-                Self {
-                    cone: Some(Cone { direction: light.direction, scale, offset: -outer.cos() * scale }),
-                    ..point
-                }
-            }
+        let far = FAR * size;
+        let (position, intensity) = match light.kind {
             LightKind::Directional => {
-                let distance = FAR * size;
-                let position = centre - light.direction * distance;
-                Self { position, intensity: light.intensity.map(|lux| lux * distance * distance), ..point }
+                (centre - light.direction * far, light.intensity.map(|lux| lux * far * far))
             }
-        }
+            LightKind::Point | LightKind::Spot { .. } => (light.position, light.intensity),
+        };
+        let cone = match light.kind {
+            LightKind::Spot { inner, outer } => Some(Cone::new(light.direction, inner, outer)),
+            LightKind::Point | LightKind::Directional => None,
+        };
+        // The solid angle of a ball around the scene.
+        let distance = (position - centre).length();
+        let angle = if distance <= size { 4.0 * PI } else { PI * (size / distance).powi(2) };
+        Self { name: light.name.clone(), power: intensity.map(|i| i * angle), position, intensity, cone }
     }
 
     /// The average irradiance of pieces, W/m².
@@ -133,22 +123,12 @@ impl Lamp {
 
     /// ∫ I(ω)/I dω over a polygon as the light sees it.
     fn share(&self, polygon: &[DVec3], normal: DVec3) -> f64 {
-        let Some(cone) = &self.cone else { return solid_angle(polygon) };
-        let pieces = cells(polygon, CUTS);
-        pieces.iter().map(|cell| solid_angle(cell) * cone.falloff(centre(cell, normal).0)).sum()
-    }
-}
-
-impl Cone {
-    /// The share of the intensity in a direction, of any length.
-    fn falloff(&self, to: DVec3) -> f64 {
-        let share = self.direction.dot(to) / to.length() * self.scale + self.offset;
-        share.clamp(0.0, 1.0).powi(2)
+        self.cone.as_ref().map_or_else(|| solid_angle(polygon), |cone| cone.share(polygon, normal))
     }
 }
 
 /// The solid angle of a convex polygon seen from the origin, sr.
-fn solid_angle(polygon: &[DVec3]) -> f64 {
+pub(super) fn solid_angle(polygon: &[DVec3]) -> f64 {
     let a = polygon[0];
     let triangle = |b: DVec3, c: DVec3| {
         let (la, lb, lc) = (a.length(), b.length(), c.length());

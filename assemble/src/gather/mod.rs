@@ -10,6 +10,7 @@
 //! ```
 
 pub mod average;
+mod cone;
 mod directions;
 pub mod faces;
 mod glowing;
@@ -53,10 +54,23 @@ pub struct Gather {
 pub struct Lights {
     /// Points, spots and parallel light.
     pub lamps: Vec<Lamp>,
-    /// Suns: polygons far away, and what they send, W/m².
-    pub suns: Vec<(Geometry, Rgb)>,
+    /// Parallel light with a width.
+    pub suns: Vec<Sun>,
     /// The sky's polygons, and what each sends, W/m².
     pub sky: Option<(Geometry, Vec<Rgb>)>,
+}
+
+/// A directional light that has a width: polygons far away.
+#[derive(Debug, Clone)]
+pub struct Sun {
+    /// The light's name.
+    pub name: String,
+    /// What looks as wide as the sun from anywhere in the scene.
+    pub polygons: Geometry,
+    /// What they send, W/m².
+    pub radiosity: Rgb,
+    /// At most this arrives at the scene, W.
+    pub power: Rgb,
 }
 
 impl Lights {
@@ -93,9 +107,9 @@ impl Gather {
             glowing.push(world.add_senders(&surfaces.elements, &surfaces.clusters));
             shining.extend(surfaces.clusters.means(&surfaces.emission));
         }
-        for (sun, sends) in &lights.suns {
-            glowing.push(world.add_far(sun));
-            shining.resize(world.nodes.len(), *sends);
+        for sun in &lights.suns {
+            glowing.push(world.add_far(&sun.polygons));
+            shining.resize(world.nodes.len(), sun.radiosity);
         }
         let sky = lights.sky.as_ref().map(|(dome, sends)| {
             shining.extend(dome.clusters.means(sends));

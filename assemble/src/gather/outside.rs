@@ -1,28 +1,19 @@
 //! What shines into a scene but is none of its surfaces: the lights of its file, and a sky.
 
-use super::Lights;
 use super::lamps::Lamp;
 use super::sky::{Radiances, dome};
+use super::{Lights, Sun};
 use equilux_bake::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Element, Face, FaceId, Geometry, LightKind, MaterialId, PunctualLight, Rgb};
+use equilux_formats::{
+    Corners, Element, Face, FaceId, Geometry, LightKind, LightUnits, MaterialId, PunctualLight,
+};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// What the intensities of a file's lights mean. Radiances of surfaces are W/(m² sr) in all of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LightUnits {
-    /// W/sr and W/m², number for number what glTF calls candela and lux.
-    Radiometric,
-    /// Candela and lux of light of 683 lm/W, as Blender writes them by default.
-    Photometric,
-    /// Watts of whole lamps, as Blender writes them with `Raw`: W/(4π) to each sr. Parallel light is W/m².
-    BlenderRaw,
-}
-
 /// Luminous efficacy that Blender's exporter takes for watts, lm/W (Standard, PBR_WATTS_TO_LUMENS).
-const LUMENS_PER_WATT: f64 = 683.0;
+pub const LUMENS_PER_WATT: f64 = 683.0;
 
 /// Suns stand this many sizes of the scene away.
 const FAR: f64 = 1e4;
@@ -30,10 +21,10 @@ const FAR: f64 = 1e4;
 /// Corners of a sun's outline are twice as many.
 const KITES: usize = 8;
 
-/// The lights of a scene that fills a world.
+/// The lights of a scene that fills a world. `units` of their intensities; none for those that their files suggest.
 pub fn lights(
     sources: &[PunctualLight],
-    units: LightUnits,
+    units: Option<LightUnits>,
     sky: Option<&Radiances>,
     world: &World,
 ) -> Lights {
@@ -62,17 +53,19 @@ pub fn frame(world: &World) -> (DVec3, f64) {
     }
 }
 
-fn in_watts(light: &PunctualLight, units: LightUnits) -> PunctualLight {
-    let factor = match (units, light.kind) {
+/// `light` with its intensity in W/sr or W/m².
+pub fn in_watts(light: &PunctualLight, units: Option<LightUnits>) -> PunctualLight {
+    let factor = match (units.unwrap_or(light.units), light.kind) {
         (LightUnits::Radiometric, _) | (LightUnits::BlenderRaw, LightKind::Directional) => 1.0,
         (LightUnits::Photometric, _) => 1.0 / LUMENS_PER_WATT,
         (LightUnits::BlenderRaw, _) => 1.0 / (4.0 * PI),
     };
-    PunctualLight { intensity: light.intensity.map(|i| i * factor), ..light.clone() }
+    let intensity = light.intensity.map(|i| i * factor);
+    PunctualLight { intensity, units: LightUnits::Radiometric, ..light.clone() }
 }
 
-/// A sun as a polygon far away, and what it sends: as much as parallel light of its intensity where it stands upright.
-fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> (Geometry, Rgb) {
+/// A sun as polygons far away that send as much as parallel light of its intensity where it stands upright.
+fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> Sun {
     let distance = FAR * size;
     let middle = centre - light.direction * distance;
     let (u, v) = light.direction.any_orthonormal_pair();
@@ -108,5 +101,10 @@ fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> (Geometry, Rgb) {
         })
         .sum();
     let elements = order.into_iter().map(|i| elements[i]).collect();
-    (Geometry { elements, faces: vec![Face::new(outline)], clusters }, light.intensity.map(|e| e / seen))
+    Sun {
+        name: light.name.clone(),
+        polygons: Geometry { elements, faces: vec![Face::new(outline)], clusters },
+        radiosity: light.intensity.map(|e| e / seen),
+        power: light.intensity.map(|e| e * PI * size * size),
+    }
 }

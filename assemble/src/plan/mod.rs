@@ -7,6 +7,7 @@ mod unseen;
 
 use crate::coupling::{Coupler, Foreseen};
 use crate::hull::intruders;
+use crate::light_notes::light_notes;
 use crate::outputs::check_writable;
 use crate::placed::Placed;
 use crate::report::summary::{BLACK_ROWS, HIDDEN_SHELLS, SHARED, UNSEEN};
@@ -100,6 +101,7 @@ pub fn plan(job: &Job) -> Result<Plan> {
     scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
     check_writable(job, &scene)?;
     let store = Store::open(&job.cache)?;
+    let lights = light_notes(&scene, job.light_units, job.sky.as_ref());
     let stopped = Monitor::default();
     stopped.stop();
     let resolution = job.preparation.resolution;
@@ -124,7 +126,7 @@ pub fn plan(job: &Job) -> Result<Plan> {
             let coupler = Coupler { placed, store: &store, file: &job.scene, resolution, monitor: &stopped };
             (0..placed.instances.len()).map(|k| coupler.foresee(k)).collect()
         }),
-        notes: [scene.notes, damage_notes(&store)].concat(),
+        notes: [scene.notes, lights, damage_notes(&store)].concat(),
     })
 }
 

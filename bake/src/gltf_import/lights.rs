@@ -1,6 +1,7 @@
 //! Punctual lights and cameras: what stands in a scene beside its parts.
 
 use super::document::Document;
+use super::exporters::light_units;
 use super::nodes::Placed;
 use super::notes::Notes;
 use equilux_formats::{Camera, LightKind, PunctualLight, Result};
@@ -37,6 +38,7 @@ pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Res
         position: DVec3::ZERO,
         direction: DVec3::NEG_Z,
         intensity,
+        units: light_units(document.gltf.as_json().asset.generator.as_deref()),
         kind,
         angle: placed.extras.angular_diameter.unwrap_or(0.0).to_radians(),
     };

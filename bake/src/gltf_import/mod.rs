@@ -15,6 +15,7 @@ mod buffers;
 mod coordinates;
 mod document;
 mod drafts;
+mod exporters;
 mod extras;
 mod files;
 mod glb;

@@ -129,6 +129,7 @@ mod tests {
     use super::super::Sheet;
     use super::*;
     use equilux_formats::{MaterialId, Texture, TexturedTriangle};
+    use glam::dvec2;
     use glam::dvec3;
     use proptest::prelude::*;
 
