@@ -5,7 +5,7 @@ use equilux_assemble::classic::whole;
 use equilux_assemble::coupling::{Coupled, Coupler};
 use equilux_assemble::exchange::{Goal, Method, Outcome, exchange, nodes};
 use equilux_assemble::gather::Gather;
-use equilux_assemble::gather::outside::{LightUnits, lights};
+use equilux_assemble::gather::outside::lights;
 use equilux_assemble::gather::sky::Radiances;
 use equilux_assemble::lightmap::Lightmap;
 use equilux_assemble::lightmap::atlas::Atlas;
@@ -47,7 +47,7 @@ pub fn lit_scene(scene: &Scene, wanted: &Preparation) -> Lit {
 /// The lightmap of a scene in this light and that of the sky, W/(m² sr), from all around.
 pub fn lightmap<'a>(scene: &'a Scene, atlas: &'a Atlas, lit: &Lit, sky: f64) -> Lightmap<'a> {
     let radiances = Radiances::Uniform([sky; 3]);
-    let lights = lights(&[], LightUnits::Radiometric, Some(&radiances), &lit.placed.world);
+    let lights = lights(&[], None, Some(&radiances), &lit.placed.world);
     let gather = Gather::new(&lit.placed, &lit.optics.emission, &lit.outcome.radiosity, &lights, EXACT);
     let light = TexelLight::new(&gather, mean(&lit.outcome.irradiance));
     Lightmap::new(scene, atlas, |texels| light.irradiance(texels), &Monitor::default()).expect("not stopped")
