@@ -24,7 +24,7 @@ use crate::warm::{keep, last_light};
 use equilux_bake::batch::damage_notes;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Preparation, lost_digits_note, prepare};
+use equilux_bake::prepare::{Preparation, Prepared, lost_digits_note, prepare};
 use equilux_bake::{depfile, stamp};
 use equilux_formats::{LightUnits, Result, Scene, Store, Swept};
 use glam::DVec3;
@@ -117,11 +117,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
 /// The same with somebody who sees it go on.
 pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Result<Report> {
     let start = Instant::now();
-    let mut scene = import_scene(&job.scene)?;
-    scene.sources.extend(job.beside().map(Path::to_path_buf));
-    let prepared = prepare(&scene, &job.preparation)?;
-    scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
-    job.check(&scene)?;
+    let (scene, prepared) = opened(job)?;
     let atlas = job.lightmaps.map(|wanted| Atlas::new(&scene, wanted.texel_size)).transpose()?;
     let (places, against) = job.tables(scene.origin)?;
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
@@ -163,9 +159,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         classic: classic.as_ref(),
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&run) };
-    if scene.hidden_shells > 0 {
-        report.blocks.coupling_left_out.insert(HIDDEN_SHELLS.into(), scene.hidden_shells);
-    }
+    report.blocks.leave_out(HIDDEN_SHELLS, scene.hidden_shells);
     report.bytes.peak_rss = peak;
     report.form_factors_computed += direct.computed;
     if job.explain {
@@ -175,10 +169,23 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
-    let lights = light_notes(&scene, job.light_units, job.sky.as_ref());
-    let lights = [lights, unlit_notes(&scene, &direct.unlit, placed, &nodes)].concat();
+    let lights = [
+        light_notes(&scene, job.light_units, job.sky.as_ref()),
+        unlit_notes(&scene, &direct.unlit, placed, &nodes),
+    ]
+    .concat();
     report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
+}
+
+/// The scene and its parts with elements. Fails where the job could not be done.
+fn opened(job: &Job) -> Result<(Scene, Prepared)> {
+    let mut scene = import_scene(&job.scene)?;
+    scene.sources.extend(job.beside().map(Path::to_path_buf));
+    let prepared = prepare(&scene, &job.preparation)?;
+    scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
+    job.check(&scene)?;
+    Ok((scene, prepared))
 }
 
 /// The light of the scene; from the last run's, and kept for the next, if that is asked for.

@@ -5,6 +5,8 @@
 //! solid angles of its polygons over 4π: 1 inside, 0 outside, whatever its shape (Jacobson, Kavan & Sorkine-Hornung 2013).
 
 use crate::disjoint_sets::DisjointSets;
+use crate::form_factor::polygon::Polygon;
+use crate::form_factor::solid_angle::solid_angle;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -136,18 +138,11 @@ pub(crate) fn volume_and_area<'a>(polygons: impl Iterator<Item = (&'a [DVec3], b
 
 /// How often polygons that look outwards go around a point: 1 inside a closed shell, 0 outside, between on it.
 pub fn winding_number<'a>(point: DVec3, polygons: impl Iterator<Item = &'a [DVec3]>) -> f64 {
-    polygons.map(|corners| solid_angle(point, corners)).sum::<f64>() / (4.0 * PI)
-}
-
-/// The angle under which a polygon is seen, negative from its front. Van Oosterom & Strackee 1983.
-fn solid_angle(point: DVec3, corners: &[DVec3]) -> f64 {
-    let of = |triangle: [DVec3; 3]| {
-        let [a, b, c] = triangle.map(|corner| corner - point);
-        let [la, lb, lc] = [a, b, c].map(DVec3::length);
-        let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
-        2.0 * a.dot(b.cross(c)).atan2(below)
+    let seen = |corners: &[DVec3]| {
+        let corners: Polygon = corners.iter().map(|&corner| corner - point).collect();
+        solid_angle(&corners)
     };
-    triangles(corners).map(of).sum()
+    polygons.map(seen).sum::<f64>() / (4.0 * PI)
 }
 
 /// A convex polygon as triangles around its first corner.

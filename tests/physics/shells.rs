@@ -37,10 +37,12 @@ fn forms() -> impl Iterator<Item = Form> {
         (Winding::Inward, true),
         (Winding::Mixed, true),
     ];
-    let scales = [DVec3::ONE, dvec3(-1.0, 1.0, 1.0)];
-    windings.into_iter().flat_map(move |(winding, two_sided)| {
-        scales.into_iter().map(move |scale| Form { winding, two_sided, scale })
-    })
+    let mirrored = dvec3(-1.0, 1.0, 1.0);
+    let each =
+        move |scale| windings.into_iter().map(move |(winding, two_sided)| Form { winding, two_sided, scale });
+    let scaled =
+        [DVec3::splat(1.0 / 128.0), 8.0 * mirrored].map(|scale| Form { two_sided: true, scale, ..PLAIN });
+    each(DVec3::ONE).chain(each(mirrored)).chain(scaled)
 }
 
 /// Solids around the origin, convex and not, flat and curved.
@@ -113,7 +115,7 @@ fn around(solid: &Part, form: Form, shine: f64) -> Solved {
         nodes.push(Node::new("lamp", lamp));
     }
     let model = Model::of(&nodes).with("/nodes/1/scale", json!(form.scale.to_array()));
-    solved_file(&model, &Setting::metres(0.5)).unwrap_or_else(|error| panic!("{form:?}: {error}"))
+    solved_file(&model, &Setting::metres(1.0)).unwrap_or_else(|error| panic!("{form:?}: {error}"))
 }
 
 /// The greatest excess of a row's sum over one.

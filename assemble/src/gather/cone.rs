@@ -2,8 +2,8 @@
 //! I(θ)/I = clamp(cos θ · s + o, 0, 1)², s = 1/(cos inner − cos outer), o = −s cos outer.
 
 use super::average::{cells, centre};
-use super::lamps::solid_angle;
 use equilux_bake::form_factor::polygon::{Polygon, Side, clip};
+use equilux_bake::form_factor::solid_angle::solid_angle;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -74,7 +74,10 @@ impl Cone {
                     self.over_cells(&cell, normal, again - 1)
                 }
                 // Simpson's rule: exact for what is quadratic over a parallelogram.
-                _ => solid_angle(&cell) * (2.0 * middle + corners().sum::<f64>() / cell.len() as f64) / 3.0,
+                _ => {
+                    solid_angle(&cell).abs() * (2.0 * middle + corners().sum::<f64>() / cell.len() as f64)
+                        / 3.0
+                }
             }
         };
         cells(polygon, CUTS).into_iter().map(of).sum()

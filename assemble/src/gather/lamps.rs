@@ -7,6 +7,7 @@ use super::cone::Cone;
 use super::receiver;
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
+use equilux_bake::form_factor::solid_angle::solid_angle;
 use equilux_bake::outline::Plane;
 use equilux_bake::shaft::Shaft;
 use equilux_bake::world::World;
@@ -123,18 +124,6 @@ impl Lamp {
 
     /// ∫ I(ω)/I dω over a polygon as the light sees it.
     fn share(&self, polygon: &[DVec3], normal: DVec3) -> f64 {
-        self.cone.as_ref().map_or_else(|| solid_angle(polygon), |cone| cone.share(polygon, normal))
+        self.cone.as_ref().map_or_else(|| solid_angle(polygon).abs(), |cone| cone.share(polygon, normal))
     }
-}
-
-/// The solid angle of a convex polygon seen from the origin, sr.
-pub(super) fn solid_angle(polygon: &[DVec3]) -> f64 {
-    let a = polygon[0];
-    let triangle = |b: DVec3, c: DVec3| {
-        let (la, lb, lc) = (a.length(), b.length(), c.length());
-        // By differences, so that small polygons far away keep their digits.
-        let volume = a.dot((b - a).cross(c - a)).abs();
-        2.0 * volume.atan2(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb)
-    };
-    polygon.windows(2).skip(1).map(|edge| triangle(edge[0], edge[1])).sum()
 }

@@ -101,6 +101,15 @@ pub struct Blocks {
     pub coupling_left_out: BTreeMap<String, usize>,
 }
 
+impl Blocks {
+    /// Notes that `what` was left out so often, if at all.
+    pub fn leave_out(&mut self, what: &str, count: usize) {
+        if count > 0 {
+            self.coupling_left_out.insert(what.into(), count);
+        }
+    }
+}
+
 /// The paper's steps: 1, 2 own blocks of the first part and of the others; 3, 4 coupling into the first and into the
 /// others; 5, 6 equilibrium in the first and in the others; 7 transfer to the others, 8 to the first.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]

@@ -7,4 +7,5 @@ pub mod contour;
 pub mod edges;
 pub mod plain;
 pub mod polygon;
+pub mod solid_angle;
 pub mod wide;
