@@ -55,6 +55,21 @@ fn sheets_and_lamps_that_show_both_sides_are_not_named() {
     assert!(judgements(&said).is_empty(), "{said:?}");
 }
 
+/// The crate's bottom lies in the plane of the floor's other side, where nobody looks.
+#[test]
+fn a_crate_on_a_two_sided_floor_is_not_named() {
+    let mut walls = hall();
+    walls.materials[0].double_sided = true;
+    let crate_ = || solid(grey(0.5, 0.0), dvec3(0.5, 0.0, 0.5), dvec3(1.5, 1.0, 1.5));
+    let mut soft = crate_();
+    soft.materials[0].double_sided = true;
+    for crate_ in [crate_(), soft] {
+        let nodes = [Node::new("hall", walls.clone()), Node::new("lamp", lamp()), Node::new("crate", crate_)];
+        let said = notes(&nodes, 0.25);
+        assert!(judgements(&said).is_empty(), "{said:?}");
+    }
+}
+
 #[test]
 fn a_closed_scene_that_gains_light_says_between_what() {
     // A lamp that faces the ceiling from a millimetre below.

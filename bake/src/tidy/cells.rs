@@ -13,18 +13,22 @@ pub(super) struct Facing {
     pub corners: Vec<DVec3>,
     /// The unit normal of the side.
     pub normal: DVec3,
+    /// Whether light may fall on the other side of the surface, too.
+    pub two_sided: bool,
 }
 
 impl Facing {
     /// The sides of `surface` on which light may fall, front first.
     pub(super) fn sides(part: &Part, surface: &Surface) -> impl Iterator<Item = Self> {
-        let back = part.is_two_sided(surface).then(|| Self::of(&surface.corners.flipped()));
-        std::iter::once(Self::of(&surface.corners)).chain(back)
+        let two_sided = part.is_two_sided(surface);
+        let back = two_sided.then(|| Self::of(&surface.corners.flipped(), two_sided));
+        std::iter::once(Self::of(&surface.corners, two_sided)).chain(back)
     }
 
     /// The side from which `corners` run counter-clockwise.
-    pub(super) fn of(corners: &Corners) -> Self {
-        Self { corners: corners.as_slice().to_vec(), normal: corners.double_area_vector().normalize() }
+    fn of(corners: &Corners, two_sided: bool) -> Self {
+        let normal = corners.double_area_vector().normalize();
+        Self { corners: corners.as_slice().to_vec(), normal, two_sided }
     }
 
     /// The box around it.
@@ -80,8 +84,8 @@ struct Cell {
 /// The pieces of `surface` of `part` that can be seen where `covers` lie on it. Pieces narrower than `tolerance`, metres, are
 /// dropped.
 pub(super) fn seen_pieces(part: &Part, surface: &Surface, covers: &[Facing], tolerance: f64) -> Vec<Surface> {
-    let own = Facing::of(&surface.corners);
     let back = part.is_two_sided(surface);
+    let own = Facing::of(&surface.corners, back);
     let mut cells = vec![Cell { corners: own.corners.iter().copied().collect(), front: true, back }];
     for cover in covers {
         let on_front = cover.normal.dot(own.normal) > 0.0;

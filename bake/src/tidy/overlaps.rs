@@ -8,9 +8,10 @@ use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
 use crate::keys::rounded;
 use crate::planes;
+use crate::shells::closed_shells;
 use crate::visibility::BoxTree;
 use equilux_formats::{Instance, Part, PartId, Scene, Surface};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
 /// More parts and pairs of parts than this are counted instead of named.
@@ -49,11 +50,13 @@ struct Sides {
 }
 
 impl Sides {
-    /// The sides of the surfaces of a part, where `is_wanted` takes their boxes.
-    fn of(part: &Part, is_wanted: impl Fn(DVec3, DVec3) -> bool) -> Self {
-        let sides = part.surfaces.iter().enumerate();
-        let sides =
-            sides.flat_map(|(number, surface)| Facing::sides(part, surface).map(move |side| (number, side)));
+    /// The sides of the surfaces of a part after `placement`, where `is_wanted` takes their boxes.
+    fn of(part: &Part, placement: DAffine3, is_wanted: impl Fn(DVec3, DVec3) -> bool) -> Self {
+        let placed = part.surfaces.iter().map(|surface| surface.placed(placement)).enumerate();
+        let sides = placed.flat_map(|(number, surface)| {
+            let sides: Vec<Facing> = Facing::sides(part, &surface).collect();
+            sides.into_iter().map(move |side| (number, side))
+        });
         let all: Vec<(usize, Facing)> = sides
             .filter(|(_, side)| {
                 let (low, high) = side.bounds();
@@ -79,15 +82,36 @@ impl Sides {
 fn cut_within(part: &mut Part) -> usize {
     let corners = || part.surfaces.iter().flat_map(|surface| surface.corners.as_slice());
     let tolerance = planes::tolerance(corners());
-    let sides = Sides::of(part, |_, _| true);
+    let sides = Sides::of(part, DAffine3::IDENTITY, |_, _| true);
     let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
     for (surface, side) in &sides.all {
         for on in sides.on(side, tolerance, |other| other < *surface) {
             covers.entry(*surface).or_default().push(sides.all[on].1.clone());
         }
     }
+    let count = noticed(part, &covers);
     part.surfaces = cut(part, &covers, tolerance);
-    covers.len()
+    count
+}
+
+/// How many of the surfaces with `covers` are worth a word. A solid that stands against a two-sided sheet, such as a crate on a
+/// floor, has a face in the plane of the sheet's other side; nobody looks there.
+fn noticed(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>) -> usize {
+    if covers.is_empty() {
+        return 0;
+    }
+    let polygons: Vec<&[DVec3]> = part.surfaces.iter().map(|s| s.corners.as_slice()).collect();
+    let mut is_of_solid = vec![false; polygons.len()];
+    for shell in closed_shells(&polygons, |_| false) {
+        for (&surface, &inward) in shell.polygons.iter().zip(&shell.inward) {
+            let surface = surface as usize;
+            is_of_solid[surface] = !inward && !part.is_two_sided(&part.surfaces[surface]);
+        }
+    }
+    let is_noticed = |(&surface, on): &(&usize, &Vec<Facing>)| {
+        !is_of_solid[surface] || on.iter().any(|cover| !cover.two_sided)
+    };
+    covers.iter().filter(is_noticed).count()
 }
 
 /// The surfaces of a part where some of them are covered.
@@ -118,10 +142,11 @@ fn cut_across(scene: &mut Scene) -> Vec<String> {
         let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
         for other in near {
             let found = covered_by(scene, number, other, tolerance(other));
-            let faces = scene.parts[scene.instances[number].part.index()].surfaces.len();
-            if !found.is_empty() {
+            let part = &scene.parts[scene.instances[number].part.index()];
+            let count = noticed(part, &found);
+            if count > 0 {
                 let [own, other] = [number, other].map(|k| &scene.instances[k].name);
-                let count = if found.len() == faces { "all".to_owned() } else { found.len().to_string() };
+                let count = if count == part.surfaces.len() { "all".to_owned() } else { count.to_string() };
                 covered.push(format!("{count} of `{own}` on `{other}`"));
             }
             found.into_iter().for_each(|(surface, cover)| covers.entry(surface).or_default().extend(cover));
@@ -147,12 +172,8 @@ fn covered_by(scene: &Scene, own: usize, other: usize, tolerance: f64) -> BTreeM
     let tolerance = tolerance / scale(own);
     let to_own = rounded(own.placement.inverse() * other.placement);
     let (low, high) = part_bounds(part);
-    let moved = Part {
-        surfaces: other_part.surfaces.iter().map(|surface| surface.placed(to_own)).collect(),
-        ..other_part.clone()
-    };
     let is_near = |a: DVec3, b: DVec3| meet((a, b), (low, high), tolerance);
-    let sides = Sides::of(&moved, is_near);
+    let sides = Sides::of(other_part, to_own, is_near);
     let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
     if sides.all.is_empty() {
         return covers;
