@@ -108,10 +108,9 @@ fn noticed(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>) -> usize {
             is_of_solid[surface] = !inward && !part.is_two_sided(&part.surfaces[surface]);
         }
     }
-    let is_noticed = |(&surface, on): &(&usize, &Vec<Facing>)| {
-        !is_of_solid[surface] || on.iter().any(|cover| !cover.two_sided)
-    };
-    covers.iter().filter(is_noticed).count()
+    let is_noticed =
+        |surface: usize, on: &[Facing]| !is_of_solid[surface] || on.iter().any(|cover| !cover.two_sided);
+    covers.iter().filter(|(surface, on)| is_noticed(**surface, on)).count()
 }
 
 /// The surfaces of a part where some of them are covered.
