@@ -315,6 +315,11 @@ fn unused() -> Vec<Form> {
         edited("attributes-of-an-application", None, |json| {
             json["meshes"][0]["primitives"][0]["attributes"]["_HEAT"] = json!(2);
         }),
+        edited("copies-in-one-place", None, |json| {
+            json["extensionsUsed"] = json!(["KHR_lights_punctual", "EXT_mesh_gpu_instancing"]);
+            let extension = json!({ "EXT_mesh_gpu_instancing": { "attributes": { "_ID": 1 } } });
+            json["nodes"][0]["extensions"] = extension;
+        }),
         edited("a-light-of-no-node", None, |json| {
             push(json, "/extensions/KHR_lights_punctual/lights", json!({ "type": "point" }));
         }),

@@ -26,9 +26,11 @@ impl Placed<'_> {
     /// Where its contents stand, and what they are called there: once, by its own name, or as the extension says,
     /// `name #0` and so on.
     pub(super) fn copies(&self, document: &Document) -> Result<Vec<(String, DAffine3)>> {
-        let Some(extension) = self.node.extension_value(INSTANCING) else {
-            return Ok(vec![(self.name(), self.placement)]);
-        };
+        let once = || Ok(vec![(self.name(), self.placement)]);
+        let Some(extension) = self.node.extension_value(INSTANCING) else { return once() };
+        if has_only_own_attributes(extension) {
+            return once();
+        }
         let transforms = Attributes { document, node: label(&self.node), extension }.transforms()?;
         let place = |(number, copy): (usize, DAffine3)| {
             let placement = self.placement * copy;
@@ -46,6 +48,12 @@ impl Placed<'_> {
         };
         transforms.into_iter().enumerate().map(place).collect()
     }
+}
+
+/// Whether there are attributes, but all are an application's own: such copies stand in one place, where one is enough.
+fn has_only_own_attributes(extension: &Value) -> bool {
+    let attributes = extension.get("attributes").and_then(Value::as_object);
+    attributes.is_some_and(|all| !all.is_empty() && all.keys().all(|name| name.starts_with('_')))
 }
 
 struct Attributes<'a> {
