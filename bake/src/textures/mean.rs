@@ -11,51 +11,18 @@
 //! or below, as the image repeats, mirrors or ends there.
 
 use super::area_and_middle;
+use super::sums::Sums;
 use crate::form_factor::polygon::{Polygon, part};
-use equilux_formats::{Rgb, Texture, Wrap};
-use glam::{DVec2, DVec3, dvec2};
+use equilux_formats::{Rgb, Wrap};
+use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
-/// The value of a texel of full colour and alpha.
-const ONE: f64 = (1_u64 << 32) as f64 * 255.0;
-/// Sums along rows are kept at every so many texels.
-const STRIDE: usize = 16;
 /// Footprints whose edges cross more texels than this, in images that repeat, take the average of the image.
 const MOST_CROSSINGS: f64 = 1e6;
 /// Footprints narrower than this, in texels, are lines: far more than rounding, far less than would show.
 const LINE: f64 = 1e-6;
 
-/// A texture with sums along its rows.
-pub(super) struct Sums<'a> {
-    texture: &'a Texture,
-    /// Linear values of sRGB bytes, of 2^32.
-    linear: [u64; 256],
-    /// For each row the sums of its texels before every [`STRIDE`]-th, and of all.
-    sums: Vec<[u64; 3]>,
-    per_row: usize,
-}
-
-impl<'a> Sums<'a> {
-    /// The sums of `texture`.
-    pub(super) fn new(texture: &'a Texture) -> Self {
-        let width = texture.size[0] as usize;
-        let per_row = width / STRIDE + 2;
-        let linear = std::array::from_fn(|byte| (linear(byte as f64 / 255.0) * 2f64.powi(32)).round() as u64);
-        let mut sums = Self { texture, linear, sums: Vec::new(), per_row };
-        for row in 0..texture.size[1] as usize {
-            let (mut sum, mut of_row) = ([0; 3], Vec::with_capacity(per_row));
-            for column in 0..width {
-                if column % STRIDE == 0 {
-                    of_row.push(sum);
-                }
-                sum = plus(sum, sums.texel(column, row));
-            }
-            of_row.resize(per_row, sum);
-            sums.sums.extend(of_row);
-        }
-        sums
-    }
-
+impl Sums<'_> {
     /// The average over a planar convex polygon, of which `at` says where its points lie, in widths and heights of the image.
     pub(super) fn mean(&self, polygon: &[DVec3], at: impl Fn(DVec3) -> DVec2) -> Rgb {
         let size = DVec2::from_array(self.texture.size.map(f64::from));
@@ -75,19 +42,6 @@ impl<'a> Sums<'a> {
             Some(line) => self.along_line(polygon, at, line),
             None => self.inside(&corners),
         }
-    }
-
-    /// Where the image begins of which a place, counted in texels, lies in a copy: numbers near zero keep their digits.
-    fn period_of(&self, place: DVec2) -> DVec2 {
-        let start = |axis: usize| {
-            let size = f64::from(self.texture.size[axis]);
-            match self.texture.wrap[axis] {
-                Wrap::Repeat => (place[axis] / size).floor() * size,
-                Wrap::Mirror => (place[axis] / (2.0 * size)).floor() * 2.0 * size,
-                Wrap::Clamp => 0.0,
-            }
-        };
-        dvec2(start(0), start(1))
     }
 
     /// The average inside corners, counted in texels.
@@ -123,13 +77,6 @@ impl<'a> Sums<'a> {
         if whole > 0.0 { sum.map(|sum| sum / whole) } else { self.at((from + to) / 2.0) }
     }
 
-    fn whole(&self) -> Rgb {
-        let [width, height] = self.texture.size.map(|size| size as usize);
-        let rows = (0..height).map(|row| self.before(width, row).map(|sum| sum as f64));
-        let sum = rows.fold([0.0; 3], |sum: Rgb, row| std::array::from_fn(|c| sum[c] + row[c]));
-        sum.map(|sum| sum / (ONE * (width * height) as f64))
-    }
-
     /// Where an edge passes from texel to texel, in shares of it from 0 to 1.
     fn stops(&self, from: DVec2, to: DVec2) -> Vec<f64> {
         let mut stops = vec![0.0, 1.0];
@@ -147,69 +94,6 @@ impl<'a> Sums<'a> {
         stops.sort_unstable_by(f64::total_cmp);
         stops.dedup();
         stops
-    }
-
-    /// The colour at a place, counted in texels.
-    fn at(&self, place: DVec2) -> Rgb {
-        let [column, row] = [0, 1].map(|axis| self.wrapped(place[axis].floor(), axis));
-        self.texel(column, row).map(|value| value as f64 / ONE)
-    }
-
-    /// G at a place, counted in texels.
-    fn left_of(&self, place: DVec2) -> Rgb {
-        let (row, column) = (self.wrapped(place.y.floor(), 1), place.x.floor());
-        let (whole, texel) = (self.along(column, row), self.at(place));
-        std::array::from_fn(|c| whole[c] + texel[c] * (place.x - column))
-    }
-
-    /// The sum from column 0 to any, left of it counted as negative.
-    fn along(&self, column: f64, row: usize) -> Rgb {
-        let width = self.texture.size[0] as usize;
-        let sum = |column: usize| self.before(column, row).map(|sum| sum as f64 / ONE);
-        let total = sum(width);
-        let (periods, rest) = match self.texture.wrap[0] {
-            Wrap::Repeat => (column.div_euclid(width as f64), sum(column.rem_euclid(width as f64) as usize)),
-            Wrap::Mirror => {
-                let (there_and_back, at) = (2 * width, column.rem_euclid(2.0 * width as f64) as usize);
-                let back = |at| {
-                    let left = sum(there_and_back - at);
-                    std::array::from_fn(|c| 2.0 * total[c] - left[c])
-                };
-                let rest = if at <= width { sum(at) } else { back(at) };
-                (2.0 * column.div_euclid(there_and_back as f64), rest)
-            }
-            Wrap::Clamp => {
-                let beyond = column - column.clamp(0.0, width as f64);
-                let (edge, inside) = (self.at(dvec2(column, row as f64)), sum((column - beyond) as usize));
-                return std::array::from_fn(|c| inside[c] + edge[c] * beyond);
-            }
-        };
-        std::array::from_fn(|c| periods * total[c] + rest[c])
-    }
-
-    /// The texel that stands at a column (axis 0) or row (axis 1).
-    fn wrapped(&self, at: f64, axis: usize) -> usize {
-        let size = f64::from(self.texture.size[axis]);
-        let inside = match self.texture.wrap[axis] {
-            Wrap::Repeat => at.rem_euclid(size),
-            Wrap::Mirror => {
-                let at = at.rem_euclid(2.0 * size);
-                at.min(2.0 * size - 1.0 - at)
-            }
-            Wrap::Clamp => at.clamp(0.0, size - 1.0),
-        };
-        (inside as usize).min(self.texture.size[axis] as usize - 1)
-    }
-
-    /// The sum of a row's texels before `column`, which is at most its width.
-    fn before(&self, column: usize, row: usize) -> [u64; 3] {
-        let kept = self.sums[row * self.per_row + column / STRIDE];
-        (column / STRIDE * STRIDE..column).fold(kept, |sum, column| plus(sum, self.texel(column, row)))
-    }
-
-    fn texel(&self, column: usize, row: usize) -> [u64; 3] {
-        let [red, green, blue, alpha] = self.texture.texels[row * self.texture.size[0] as usize + column];
-        [red, green, blue].map(|byte| self.linear[usize::from(byte)] * u64::from(alpha))
     }
 }
 
@@ -240,20 +124,12 @@ fn line_through(corners: &[DVec2]) -> Option<[DVec2; 2]> {
     (high - low <= LINE).then_some([from, to])
 }
 
-fn plus(a: [u64; 3], b: [u64; 3]) -> [u64; 3] {
-    std::array::from_fn(|c| a[c] + b[c])
-}
-
-/// Linear light of an sRGB value, both 0..1. IEC 61966-2-1.
-fn linear(value: f64) -> f64 {
-    if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::Sheet;
     use super::*;
-    use equilux_formats::{MaterialId, TexturedTriangle};
-    use glam::dvec3;
+    use equilux_formats::{MaterialId, Texture, TexturedTriangle};
+    use glam::{dvec2, dvec3};
     use proptest::prelude::*;
 
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
@@ -325,54 +201,53 @@ mod tests {
         Texture { size, texels: (0..size[0] * size[1]).map(texel).collect(), wrap }
     }
 
+    /// The texel that stands at a column or row.
+    fn shown(at: i64, size: i64, wrap: Wrap) -> u32 {
+        let shown = match wrap {
+            Wrap::Clamp => at.clamp(0, size - 1),
+            Wrap::Repeat => at.rem_euclid(size),
+            Wrap::Mirror if at.div_euclid(size) % 2 == 0 => at.rem_euclid(size),
+            Wrap::Mirror => size - 1 - at.rem_euclid(size),
+        };
+        shown as u32
+    }
+
     proptest! {
-        /// Any part of any face whose coordinates lie on a point, on a line inside a row of texels, or within 1e-7 of a point.
+        /// Any part of any face whose coordinates lie on a point, within 1e-7 of it, or on a line inside a texel, in any copy of
+        /// the image.
         #[test]
         fn a_point_or_a_line_has_the_colour_of_its_texel(
             size in prop::array::uniform2(1..300_u32),
-            (u, v) in (prop::array::uniform2(0.0..1.0_f64), prop::array::uniform2(-3..1000_i32)),
+            texel in prop::array::uniform2(0.0..1.0_f64),
+            copy in prop::array::uniform2(-3..1000_i32),
             wrap in prop::array::uniform2(prop::sample::select(WRAPS.to_vec())),
             face in prop::array::uniform3(prop::array::uniform3(-9.0..9.0_f64)),
-            jitter in prop::array::uniform3(prop::array::uniform2(-1.0..1.0_f64)),
+            off in prop::array::uniform3(prop::array::uniform2(-1.0..1.0_f64)),
             (spread, share) in (0..3, 0.1..0.9_f64),
         ) {
-            let (size_of, copy) = (DVec2::from_array(size.map(f64::from)), DVec2::from_array(v.map(f64::from)));
-            // Not nearer to the border of a texel than the spread, and than what f32 coordinates are rounded by.
-            let inside = (DVec2::from_array(u) * size_of).floor() + 0.5 + 0.3 * (DVec2::from_array(jitter[0]));
-            let copy = DVec2::select(DVec2::from_array(u).cmplt(DVec2::splat(0.5)), copy, DVec2::ZERO);
-            let place = (inside / size_of + copy).as_vec2().as_dvec2();
-            let at = |axis: usize| {
-                let (texels, texel) = (i64::from(size[axis]), (place[axis] * size_of[axis]).floor() as i64);
-                (match wrap[axis] {
-                    Wrap::Clamp => texel.clamp(0, texels - 1),
-                    Wrap::Repeat => texel.rem_euclid(texels),
-                    Wrap::Mirror => {
-                        let there = texel.rem_euclid(2 * texels);
-                        there.min(2 * texels - 1 - there)
-                    }
-                }) as u32
-            };
-            let texture = bright(size, [at(0), at(1)], wrap);
-            prop_assume!(copy == DVec2::ZERO || (place * size_of).fract_gl().cmpgt(DVec2::splat(0.1)).all());
-            let off = jitter.map(|[x, y]| match spread {
-                0 => DVec2::ZERO,
-                1 => dvec2(x, y) * 1e-7,
-                // Along a line of whatever slope, inside the texel.
-                _ => (dvec2(jitter[0][0], jitter[1][1]) * x * 0.05) / size_of,
+            let across = DVec2::from_array(size.map(f64::from));
+            let column_and_row = (DVec2::from_array(texel) * across).floor() + DVec2::from_array(copy.map(f64::from)) * across;
+            // Coordinates are f32: at 1000 widths of 300 texels they are off by a hundredth of a texel.
+            let place = ((column_and_row + 0.5 + 0.3 * DVec2::from_array(off[0])) / across).as_vec2().as_dvec2();
+            let shown = [0, 1].map(|axis| shown(column_and_row[axis] as i64, i64::from(size[axis]), wrap[axis]));
+            let places = off.map(|[x, y]| match spread {
+                0 => place,
+                1 => place + dvec2(x, y) * 1e-7,
+                _ => place + dvec2(off[0][0], off[1][1]) * x * 0.05 / across,
             });
-            let [a, b, c] = face.map(DVec3::from_array);
-            let normal = (b - a).cross(c - a);
-            prop_assume!(normal.length() > 1e-3);
-            let places = off.map(|off| place + off);
+            let corners = face.map(DVec3::from_array);
+            let [a, b, c] = corners;
+            prop_assume!((b - a).cross(c - a).length() > 1e-3);
             let triangle = TexturedTriangle {
                 material: MaterialId(0),
-                corners: [a, b, c],
+                corners,
                 colours: [[1.0; 3]; 3],
                 reflectance_at: None,
                 emission_at: None,
             };
-            let sheet = super::super::Sheet::new(&triangle);
+            let sheet = Sheet::new(&triangle);
             let element = [a.lerp(b, share), b.lerp(c, share), c.lerp(a, share)];
+            let texture = bright(size, shown, wrap);
             let found = Sums::new(&texture).mean(&element, |p| sheet.at(p, places));
             prop_assert_eq!(found, [1.0; 3], "{} in a texture of {:?}, {:?}", place, size, wrap);
         }
@@ -380,9 +255,9 @@ mod tests {
 
     #[test]
     fn a_point_on_a_border_has_the_texel_right_of_it_or_below() {
-        // Columns of 1, 2, 3 and 4 sixteenths of full colour.
-        let texels = (1..=4_u8).flat_map(|column| [[255, 255, 255, 16 * column - 1]; 1]).collect::<Vec<_>>();
-        let texels = [texels.clone(), texels].concat();
+        // Columns of unlike alpha.
+        let texels: Vec<[u8; 4]> =
+            [1, 2, 3, 4, 1, 2, 3, 4].map(|column| [255, 255, 255, 16 * column]).to_vec();
         for (wrap, borders) in [
             (Wrap::Repeat, [(0.25, 2), (0.5, 3), (0.0, 1), (1.0, 1), (-0.25, 4), (1000.75, 4)]),
             (Wrap::Mirror, [(0.25, 2), (0.5, 3), (0.0, 1), (1.0, 4), (-0.25, 1), (1001.25, 3)]),
@@ -391,7 +266,7 @@ mod tests {
             let texture = Texture { size: [4, 2], texels: texels.clone(), wrap: [wrap; 2] };
             for (u, column) in borders {
                 let found = mean_of(&Sums::new(&texture), &[dvec2(u, 0.5); 3])[0];
-                let expected = f64::from(16 * column - 1) / 255.0;
+                let expected = f64::from(16 * column) / 255.0;
                 assert!((found - expected).abs() < 1e-12, "{wrap:?} at {u}: {found}, expected {expected}");
             }
         }

@@ -5,15 +5,16 @@
 //! whatever is painted on them.
 
 mod mean;
+mod sums;
 
 use crate::form_factor::polygon::{Polygon, Side, clip};
 use crate::visibility::{BoxTree, Inside};
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
-use mean::Sums;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
+use sums::Sums;
 
 /// How far a quad made of two triangles may lie off one of them, in its longest edges: twice what the importer takes for flat.
 const BENT: f64 = 2e-4;
