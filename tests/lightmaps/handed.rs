@@ -7,7 +7,7 @@ use equilux_assemble::run::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Corners, Material, Part, Surface};
+use equilux_formats::{Material, Part};
 use equilux_tests::lit::{lightmap, lit_scene};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, joined, part, rectangle, solid};
@@ -126,13 +126,10 @@ fn light_is_where_it_belongs_whichever_way_islands_lie() {
 #[test]
 fn a_readable_floor_under_an_even_sky_is_even() {
     let mut floor = rectangle(part(grey(0.5, 0.0)), DVec3::ZERO, DVec3::Z * 4.0, DVec3::X * 4.0);
-    let readable = |surface: &Surface| {
-        let corners: Corners = surface.corners;
-        let places: Vec<DVec2> =
-            corners.as_slice().iter().map(|p| 0.05 + 0.9 * dvec2(p.x, p.z) / 4.0).collect();
-        Some([places[0], places[1], places[2], places[3]])
-    };
-    floor.surfaces[0].lightmap = readable(&floor.surfaces[0]);
+    for surface in &mut floor.surfaces {
+        let corners = surface.corners.as_slice();
+        surface.lightmap = Some([0, 1, 2, 3].map(|i| 0.05 + 0.9 * dvec2(corners[i].x, corners[i].z) / 4.0));
+    }
     let workshop = Workshop::new();
     Model::of(&[Node::new("floor", floor)]).write(&workshop.path("scene.glb"));
     let mut job = workshop.job(Division::Authored);
