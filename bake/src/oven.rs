@@ -1,7 +1,7 @@
 //! Prepared part → [`BakedPart`]: its own block of form factors and its local equilibrium, from the cache if there.
 
 use crate::cached::{Origin, cached, foreseen};
-use crate::elements::repainted;
+use crate::elements::{ElementSize, repainted};
 use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
@@ -203,11 +203,18 @@ pub fn local_equilibrium(
     LocalEquilibrium { solver, radiosity, factors, answers }
 }
 
-/// Everything that the part's own form factors depend on, and nothing else.
+/// Everything that the part's own form factors depend on, and nothing else. Sizes are in the part's own units, so that it is baked
+/// once however large it stands; reasons mention them in metres of the scene.
 pub fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifest {
+    let own_size = match part.element_size.in_units_of(part.unit) {
+        // Scales are f32: six digits are the same however they are rounded.
+        ElementSize::Metres(size) => format!("{size:.5e}"),
+        ElementSize::Mesh => "mesh".into(),
+    };
     Manifest::new()
         .setting("kernel", KERNEL_VERSION)
         .remark("element size", part.element_size)
+        .detail("element size in the part's units", own_size)
         .setting("resolution", resolution)
         .digest("geometry", geometry_digest(&part.geometry))
 }

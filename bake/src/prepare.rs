@@ -62,6 +62,8 @@ pub struct PreparedPart {
     pub materials: Vec<Material>,
     /// How large its elements may be, metres of the scene where it stands largest.
     pub element_size: ElementSize,
+    /// The metres that one unit of its coordinates makes there.
+    pub unit: f64,
     /// Who solves its equilibrium.
     pub solver: LocalSolver,
 }
@@ -89,6 +91,7 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
             solver: solver.unwrap_or_else(|| default_solver(geometry.elements.len())),
             materials: part.materials.clone(),
             element_size: size,
+            unit: scale,
             geometry,
         });
     }
@@ -174,6 +177,8 @@ fn refuse_too_many(scene: &Scene, part: &Part, elements: u128, size: ElementSize
     };
     let remedy = if part.surfaces.len() as u128 > MOST_ELEMENTS {
         "simplify its mesh, or divide it into several root nodes"
+    } else if part.element_size.is_some() {
+        "choose a larger element_size in the extras of its node"
     } else {
         "choose larger elements with --element-size METRES"
     };
@@ -208,6 +213,7 @@ fn divided(
             geometry,
             materials: materials.clone(),
             element_size: authored.element_size,
+            unit: 1.0,
             solver,
         });
     }

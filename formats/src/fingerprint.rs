@@ -102,8 +102,8 @@ struct Entry {
     value: Value,
 }
 
-/// A setting is short enough to be told, a detail is not; of larger content only a digest is kept. A remark is no input: it
-/// says in a few words what an input that is kept as a digest came from.
+/// A setting is short enough to be told, a detail is not; of larger content only a digest is kept. A remark explains a digest in
+/// a few words and is not part of the key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Value {
@@ -129,8 +129,8 @@ impl Manifest {
         self.with(label.into(), Value::Detail(value.to_string()))
     }
 
-    /// Adds words that explain a digest, such as the element size that a geometry was cut to. They are told like a setting,
-    /// but the key does not depend on them: equal content has equal keys. Panics when the label is taken.
+    /// Adds words that explain a digest, such as the element size of a geometry. Reasons mention them like settings, but the
+    /// key does not depend on them: equal content has equal keys. Panics when the label is taken.
     pub fn remark(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
         self.with(label.into(), Value::Remark(value.to_string()))
     }

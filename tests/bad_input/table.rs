@@ -75,6 +75,11 @@ fn cases() -> Vec<Case> {
             options: &["--element-size", "1e-5"],
             ..case("dust, counted", square().bytes(), ["has 10000000000 of them", "larger elements"])
         },
+        case(
+            "dust that its author asked for",
+            square().with("/nodes/0/extras", json!({ "element_size": 1e-5 })).bytes(),
+            ["has 10000000000 of them", "a larger element_size in the extras"],
+        ),
     ]
 }
 

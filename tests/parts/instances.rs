@@ -38,6 +38,7 @@ fn prepared(name: &str, part: &Part, size: f64) -> PreparedPart {
         tints,
         materials: part.materials.clone(),
         element_size: ElementSize::Metres(size),
+        unit: 1.0,
         solver: LocalSolver::Direct,
         geometry,
     }

@@ -129,8 +129,7 @@ mod tests {
     use super::super::Sheet;
     use super::*;
     use equilux_formats::{MaterialId, Texture, TexturedTriangle};
-    use glam::dvec2;
-    use glam::dvec3;
+    use glam::{dvec2, dvec3};
     use proptest::prelude::*;
 
     const WRAPS: [Wrap; 3] = [Wrap::Repeat, Wrap::Mirror, Wrap::Clamp];
