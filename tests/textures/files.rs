@@ -77,13 +77,13 @@ fn images_that_cannot_be_read_are_named() {
         import_scene(&workshop.path("scene.glb")).expect_err(uri).to_string()
     };
     for (uri, expected) in [
-        ("broken.png", vec!["scene.glb", "image broken.png cannot be decoded", "PNG or JPEG"]),
-        ("words.jpg", vec!["image words.jpg cannot be decoded (neither PNG nor JPEG)"]),
+        ("broken.png", vec!["scene.glb", "image broken.png cannot be decoded", "PNG, JPEG or WebP"]),
+        ("words.jpg", vec!["image words.jpg cannot be decoded (neither PNG nor JPEG nor WebP)"]),
         ("missing.png", vec!["scene.glb", "'missing.png'", "cannot be read", "an existing file"]),
         ("../paper.png", vec!["'../paper.png'", "leaves the scene's folder"]),
         ("https://example.org/a.png", vec!["is a URL"]),
         ("data:image/png;base64,iVBORw0KGgo=", vec!["image 0 cannot be decoded"]),
-        ("data:image/png,abc", vec!["image 0 with a data URI that is not base64"]),
+        ("data:image/png,abc", vec!["image 0 cannot be decoded (neither PNG nor JPEG nor WebP)"]),
     ] {
         let error = refusal(uri);
         for words in expected {

@@ -16,10 +16,13 @@ pub(super) fn note(placed: &Placed, nodes: &[Node], outcome: &Outcome, view: &Vi
     let energy = &outcome.known.energy;
     let channel = (0..3).max_by(|&a, &b| energy.emitted[a].total_cmp(&energy.emitted[b]))?;
     let (emitted, absorbed) = (energy.emitted[channel], energy.absorbed[channel]);
-    if emitted <= 0.0 || (absorbed - emitted).abs() <= SHARE * emitted || !view.is_closed() {
+    // What falls on black backs is absorbed there and not counted.
+    let gained = absorbed > (1.0 + SHARE) * emitted;
+    let lost = absorbed < (1.0 - SHARE) * emitted && !view.shows_backs();
+    if emitted <= 0.0 || !(gained || lost) || !view.is_closed() {
         return None;
     }
-    let (sender, receiver) = culprits(placed, nodes, outcome, channel, absorbed > emitted)?;
+    let (sender, receiver) = culprits(placed, nodes, outcome, channel, gained)?;
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let where_ = if sender == receiver {
         format!("faces of {}", name(sender))

@@ -47,6 +47,11 @@ impl<'a> View<'a> {
     pub(super) fn is_closed(&self) -> bool {
         self.hits.iter().all(Option::is_some)
     }
+
+    /// Whether some ray met the black back of a surface.
+    pub(super) fn shows_backs(&self) -> bool {
+        self.hits.iter().flatten().any(|hit| !hit.front)
+    }
 }
 
 /// A ray from just above the centroid of an element, by two numbers in 0..1.
