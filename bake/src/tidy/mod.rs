@@ -21,10 +21,8 @@ pub(crate) fn tidy(scene: &mut Scene) {
 fn drop_unused_parts(scene: &mut Scene) {
     let mut new: Vec<Option<PartId>> = vec![None; scene.parts.len()];
     scene.instances.iter().for_each(|instance| new[instance.part.index()] = Some(instance.part));
-    let mut number = 0;
-    for id in new.iter_mut().flatten() {
+    for (number, id) in new.iter_mut().flatten().enumerate() {
         *id = PartId::from_index(number);
-        number += 1;
     }
     let mut used = new.iter().map(Option::is_some);
     scene.parts.retain(|_| used.next().expect("one for each part"));
