@@ -2,9 +2,8 @@
 //! with a reference. In goes a scene; out come `sweep.csv`, `sweep.json` and `report.html`. What was run is kept, so that a
 //! sweep that was stopped goes on where it was.
 
-pub mod cli;
 mod errors;
-mod findings;
+pub mod findings;
 mod folder;
 mod forecast;
 pub mod front;
@@ -16,7 +15,7 @@ mod reference;
 mod run;
 mod separation;
 mod setting;
-mod summary;
+pub mod summary;
 mod table;
 
 use equilux_bake::elements::ElementSize;

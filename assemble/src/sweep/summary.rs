@@ -9,7 +9,7 @@ use super::reference::Reference;
 use super::run::{Round, Run};
 use super::separation::{Separated, separated};
 use super::setting::{Kind, Setting};
-use crate::report::Seconds;
+use crate::report::seconds::Seconds;
 use serde::Serialize;
 use std::path::Path;
 
