@@ -1,8 +1,8 @@
 //! Faces that hide together: corners, edges, and what is known about the whole.
 
 use super::touching_itself::touches_itself;
-use crate::planes::FLATNESS;
-use crate::visibility::{BoxTree, Inside};
+use crate::geometry::box_tree::{BoxTree, Inside};
+use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;

@@ -6,8 +6,8 @@ use super::crossings::cut_at_crossings;
 use super::mesh::steps;
 use super::seen::{Arcs, Hiding, SeenMesh};
 use super::sender::{SeenPolygon, middle};
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::Hides;
+use crate::geometry::polygon::Hides;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// A mesh and a sender, both as one receiver sees them.

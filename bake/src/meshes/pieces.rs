@@ -6,7 +6,7 @@
 
 use super::arc::Arc;
 use super::obstruction::Obstruction;
-use crate::form_factor::polygon::{Hides, Polygon, Side, clip};
+use crate::geometry::polygon::{Hides, Polygon, Side, clip};
 use glam::DVec3;
 
 /// A shorter arc, in radians, does not tell on its own on which side of it is what; a face is asked.

@@ -5,7 +5,7 @@ use super::covers::Sight;
 use super::crossings::cut_at_crossings;
 use super::directions::{Span, Spans};
 use super::mesh::{Edge, Mesh, steps};
-use crate::form_factor::plain::IN_PLANE;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::{DVec3, Vec3A};
 
 /// What all senders of one receiver share.

@@ -1,8 +1,8 @@
 //! A sender polygon as it is seen from one receiver.
 
 use super::directions::Span;
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::Polygon;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// What all meshes that may hide a sender share.

@@ -1,8 +1,8 @@
 //! Whether a mesh goes through itself, or touches itself other than along the edges that its faces share.
 
 use super::mesh::{Mesh, steps};
-use crate::form_factor::plain::IN_PLANE;
-use crate::visibility::{BoxTree, Inside};
+use crate::geometry::box_tree::{BoxTree, Inside};
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// Whether an edge of any face goes through the inside of another, or touches it. Where faces cross, one of them has

@@ -7,8 +7,8 @@
 mod mean;
 mod sums;
 
-use crate::form_factor::polygon::{Polygon, Side, clip};
-use crate::visibility::BoxTree;
+use crate::geometry::box_tree::BoxTree;
+use crate::geometry::polygon::{Polygon, Side, clip};
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;

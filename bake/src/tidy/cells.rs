@@ -2,7 +2,7 @@
 //!
 //! All corners are in the coordinates of the surface's part.
 
-use crate::form_factor::polygon::{Polygon, Side, clip};
+use crate::geometry::polygon::{Polygon, Side, clip};
 use equilux_formats::{Corners, Part, Surface};
 use glam::{DVec2, DVec3};
 

@@ -6,8 +6,8 @@
 //! camera is not clearly outside of it in one of its places. What only reflects does not matter: inside a closed opaque
 //! shell it is as dark as the shell.
 
-use crate::shells::{Shell, closed_shells, winding_number};
-use crate::visibility::BoxTree;
+use crate::geometry::box_tree::BoxTree;
+use crate::geometry::shells::{Shell, closed_shells, winding_number};
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
 

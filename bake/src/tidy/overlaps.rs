@@ -6,10 +6,10 @@
 
 use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
-use crate::keys::rounded;
-use crate::planes;
-use crate::shells::closed_shells;
-use crate::visibility::BoxTree;
+use crate::geometry::box_tree::BoxTree;
+use crate::geometry::planes;
+use crate::geometry::shells::closed_shells;
+use crate::oven::keys::rounded;
 use equilux_formats::{Instance, Part, PartId, Scene, Surface};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;

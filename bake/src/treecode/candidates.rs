@@ -3,10 +3,10 @@
 
 use super::viewers::{Viewers, box_corners};
 use crate::form_factor::wide::vectorised;
-use crate::occluders::{Shape, Together};
-use crate::planes::FLATNESS;
-use crate::shaft::Shaft;
-use crate::visibility::Inside;
+use crate::geometry::box_tree::Inside;
+use crate::geometry::shaft::Shaft;
+use crate::geometry::tolerance::FLATNESS;
+use crate::world::occluders::{Shape, Together};
 use crate::world::{Node, World};
 use equilux_formats::{Face, FaceId};
 use glam::DVec3;

@@ -7,7 +7,7 @@
 
 use super::Request;
 use super::viewers::Viewers;
-use crate::shaft::Shaft;
+use crate::geometry::shaft::Shaft;
 use crate::world::{Node, World};
 use equilux_formats::{Geometry, RowGroup, Rows};
 use glam::{DAffine3, DVec3};

@@ -1,7 +1,7 @@
 //! Receivers as seen by the search: where they are, and which way they look if they all lie on one side of one face.
 
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::{Polygon, convex_hull};
+use crate::geometry::polygon::{Polygon, convex_hull};
+use crate::geometry::tolerance::IN_PLANE;
 use crate::world::{Node, World};
 use equilux_formats::{Element, FaceId};
 use glam::DVec3;

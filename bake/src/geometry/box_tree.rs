@@ -3,8 +3,6 @@
 //! obvhs builds the hierarchies in f32; boxes are then taken anew in f64, and exact clipping decides everything. No
 //! type of obvhs leaves this module.
 
-pub mod rays;
-
 use glam::{DVec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
@@ -105,7 +103,9 @@ impl BoxTree {
         (low, high)
     }
 }
-struct Box3(Aabb);
+
+/// A box in f32.
+pub(crate) struct Box3(pub Aabb);
 
 impl Boundable for Box3 {
     fn aabb(&self) -> Aabb {
@@ -113,14 +113,14 @@ impl Boundable for Box3 {
     }
 }
 
-fn build(boxes: &[Box3]) -> Option<Bvh2> {
+pub(crate) fn build(boxes: &[Box3]) -> Option<Bvh2> {
     let mut time = Duration::ZERO;
     (!boxes.is_empty()).then(|| build_bvh2(boxes, BvhBuildParams::medium_build(), &mut time))
 }
 
 /// The centre of all points, and the padding that covers the rounding of their f32 images around it: four units in
 /// the last place of the largest coordinate.
-fn frame(points: impl Iterator<Item = DVec3> + Clone) -> (DVec3, f32) {
+pub(crate) fn frame(points: impl Iterator<Item = DVec3> + Clone) -> (DVec3, f32) {
     let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
     if low.x > high.x {
         return (DVec3::ZERO, 0.0);
@@ -128,7 +128,7 @@ fn frame(points: impl Iterator<Item = DVec3> + Clone) -> (DVec3, f32) {
     ((low + high) / 2.0, ((high - low).max_element() * 4.0) as f32 * f32::EPSILON)
 }
 
-fn bounds(points: &[DVec3], centre: DVec3, padding: f32) -> Aabb {
+pub(crate) fn bounds(points: &[DVec3], centre: DVec3, padding: f32) -> Aabb {
     let local: Vec<Vec3A> = points.iter().map(|&p| (p - centre).as_vec3a()).collect();
     let around = Aabb::from_points(&local);
     Aabb::new(around.min - padding, around.max + padding)

@@ -3,7 +3,8 @@
 //! In each plane polygons first grow into strips along one direction, then in any. A regular grid so becomes one
 //! rectangle, a wall with a door three or four.
 
-use crate::planes::{self, FLATNESS};
+use crate::geometry::planes;
+use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;

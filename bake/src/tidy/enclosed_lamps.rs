@@ -4,7 +4,7 @@
 //! A room is a shell around its lamps, too. It is none of these: it looks inwards only, or holds more than lamps, or is
 //! large in its scene.
 
-use crate::shells::{Shell, closed_shells, winding_number};
+use crate::geometry::shells::{Shell, closed_shells, winding_number};
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
 

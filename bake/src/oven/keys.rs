@@ -8,8 +8,8 @@
 
 use crate::elements::repainted;
 use crate::gltf_import::import_scene;
+use crate::oven::prepare::{Preparation, Prepared, prepare};
 use crate::oven::{KERNEL_VERSION, geometry_manifest, light_manifest};
-use crate::prepare::{Preparation, Prepared, prepare};
 use crate::treecode::Resolution;
 use equilux_formats::{Instance, Key, Manifest, Result, Store, Swept};
 use glam::DAffine3;

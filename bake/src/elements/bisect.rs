@@ -3,8 +3,8 @@
 //! The cells are convex, so nothing foreign can stand between two points of one of them: a cell's own block of form
 //! factors is exact inside the whole. Debelov & Sevastyanov, §2.
 
-use crate::clusters;
-use crate::form_factor::polygon::{Side, clip};
+use crate::elements::clusters;
+use crate::geometry::polygon::{Side, clip};
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
 use glam::DVec3;
 

@@ -1,7 +1,7 @@
 //! Scene → parts ready to bake: elements of the chosen size, or cells that planes cut out of the whole scene.
 
-use crate::bisect::{Cut, bisect, cut_all};
-use crate::clusters;
+use crate::elements::bisect::{Cut, bisect, cut_all};
+use crate::elements::clusters;
 use crate::elements::{ElementSize, Panels, area, default_size, optics};
 use crate::equilibrium::default_solver;
 use crate::textures::tints;

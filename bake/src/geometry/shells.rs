@@ -4,9 +4,9 @@
 //! polygon depends on it, one winding is carried across the edges. How often a shell goes around a point is the sum of the
 //! solid angles of its polygons over 4π: 1 inside, 0 outside, whatever its shape (Jacobson, Kavan & Sorkine-Hornung 2013).
 
-use crate::disjoint_sets::DisjointSets;
-use crate::form_factor::polygon::Polygon;
-use crate::form_factor::solid_angle::solid_angle;
+use crate::geometry::disjoint_sets::DisjointSets;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::solid_angle::solid_angle;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;

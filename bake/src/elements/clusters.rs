@@ -2,7 +2,7 @@
 //! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
 //! face sides themselves are halved by place.
 
-use crate::visibility::rays::RayIndex;
+use crate::rays::RayIndex;
 use equilux_formats::{ClusterTree, Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;

@@ -3,7 +3,7 @@
 //! All points are relative to the receiver's collocation point, so every plane of a pyramid passes through the
 //! origin and is given by its normal alone.
 
-use super::plain::IN_PLANE;
+use super::tolerance::IN_PLANE;
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 

@@ -1,11 +1,13 @@
 //! Elements, clusters and faces of one or many instances in one frame: what form-factor rows are computed in.
 
-use crate::form_factor::polygon::{Polygon, convex_hull};
-use crate::occluders::Occluders;
-use crate::planes;
-use crate::solids::lit_behind;
+pub mod occluders;
+
+use crate::geometry::planes;
+use crate::geometry::polygon::{Polygon, convex_hull};
+use crate::geometry::solids::lit_behind;
 use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
+use occluders::Occluders;
 use std::ops::Range;
 
 /// Placed geometry with what blocks light in it.

@@ -3,7 +3,7 @@
 //! The intersection is computed in f64 against the element's own polygon; a point on a shared edge belongs to both
 //! elements, so no ray slips through.
 
-use super::{Box3, bounds, build, frame};
+use crate::geometry::box_tree::{Box3, bounds, build, frame};
 use equilux_formats::Element;
 use glam::DVec3;
 use obvhs::bvh2::Bvh2;

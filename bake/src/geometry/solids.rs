@@ -3,8 +3,8 @@
 //! A solid is a shell of faces of which the side that has elements looks outwards. A room, whose faces look inwards, is
 //! none; nor is what is open somewhere, or what shines or reflects on both sides.
 
-use crate::disjoint_sets::DisjointSets;
-use crate::shells::{
+use crate::geometry::disjoint_sets::DisjointSets;
+use crate::geometry::shells::{
     closed_shells, groups_by_edges, is_balanced, point_key, triangles, volume_and_area, winding_number,
 };
 use equilux_formats::{Element, Face, Geometry};
