@@ -6,7 +6,8 @@
 //! there are, the slow light between them, which goes to and fro many times, is smooth and hardly differs from a sum of
 //! the answers to these. Local responses as a coarse space: Dryja & Widlund 1994; Spillane et al. 2014 for slow modes.
 
-use super::{LocalSystem, added, scaled};
+use super::channels::{added, scaled};
+use super::system::LocalSystem;
 use equilux_formats::{Answers, Element, Geometry, Rgb};
 use glam::DVec3;
 

@@ -1,10 +1,12 @@
 //! Geometry that knows nothing of light: polygons and their cuts, planes, outlines, shells, boxes and hierarchies of boxes.
 
+pub mod bounds;
 pub mod box_tree;
 pub mod disjoint_sets;
 pub mod outline;
 pub mod planes;
 pub mod polygon;
+pub mod rounded_placement;
 pub mod shaft;
 pub mod shells;
 pub mod solid_angle;

@@ -8,8 +8,8 @@ use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
 use crate::geometry::box_tree::BoxTree;
 use crate::geometry::planes;
+use crate::geometry::rounded_placement::RoundedPlacement;
 use crate::geometry::shells::closed_shells;
-use crate::oven::keys::rounded;
 use equilux_formats::{Instance, Part, PartId, Scene, Surface};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
@@ -169,7 +169,7 @@ fn covered_by(scene: &Scene, own: usize, other: usize, tolerance: f64) -> BTreeM
     let [(own, part), (other, other_part)] =
         [own, other].map(|k| (&scene.instances[k], &scene.parts[scene.instances[k].part.index()]));
     let tolerance = tolerance / scale(own);
-    let to_own = rounded(own.placement.inverse() * other.placement);
+    let to_own = DAffine3::from(RoundedPlacement::from(own.placement.inverse() * other.placement));
     let (low, high) = part_bounds(part);
     let is_near = |a: DVec3, b: DVec3| meet((a, b), (low, high), tolerance);
     let sides = Sides::of(other_part, to_own, is_near);

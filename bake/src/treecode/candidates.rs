@@ -1,8 +1,9 @@
 //! Lists of what may stand between receivers and a sender. They start with the box around everything and are narrowed
 //! on the way down the two hierarchies; entries are boxes that have not been opened, or occluders.
 
-use super::viewers::{Viewers, box_corners};
+use super::viewers::Viewers;
 use crate::form_factor::wide::vectorised;
+use crate::geometry::bounds::box_corners;
 use crate::geometry::box_tree::Inside;
 use crate::geometry::shaft::Shaft;
 use crate::geometry::tolerance::FLATNESS;

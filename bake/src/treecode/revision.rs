@@ -5,7 +5,6 @@
 //! stays as it is. Senders that were hidden have no entry and may be seen now: so it is the two hierarchies that are walked
 //! down where shafts touch the change, not the entries.
 
-use super::Request;
 use super::viewers::Viewers;
 use crate::geometry::shaft::Shaft;
 use crate::world::{Node, World};
@@ -80,8 +79,9 @@ impl Revision<'_> {
         self.old.senders() == columns.len() && self.old.senders_seen().all(stays)
     }
 
-    /// The rows of some receivers that see nothing that changed; none if a sender of theirs is gone.
-    pub fn untouched(&self, request: &Request, elements: &Range<usize>) -> Option<RowGroup> {
+    /// The rows of some receivers that see nothing that changed, with columns that count from the node `first_column`; none
+    /// if a sender of theirs is gone.
+    pub fn untouched(&self, first_column: usize, elements: &Range<usize>) -> Option<RowGroup> {
         let group = self.old.group_of(elements.start);
         let (columns, values) = self.old.values_of(group);
         let sender = |&column: &u32| self.senders[column as usize];
@@ -90,7 +90,7 @@ impl Revision<'_> {
         if !senders.is_sorted() {
             return None;
         }
-        let columns = senders.iter().map(|node| node - request.columns.start as u32).collect();
+        let columns = senders.iter().map(|node| node - first_column as u32).collect();
         Some(RowGroup { columns, values, receivers: self.old.receivers_of(group).len() })
     }
 }
@@ -110,12 +110,11 @@ pub struct Revised<'a> {
 impl<'a> Revised<'a> {
     /// The group of some receivers.
     pub fn new(
-        request: &'a Request<'a>,
+        world: &World,
         revision: &'a Revision<'a>,
         viewers: &Viewers,
         elements: &Range<usize>,
     ) -> Self {
-        let world = request.world;
         let group = revision.old.group_of(elements.start);
         let (columns, values) = revision.old.values_of(group);
         let (mut kept, mut dropped) = (HashMap::new(), HashSet::new());

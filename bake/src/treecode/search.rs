@@ -1,11 +1,12 @@
 //! One flat cluster of receivers looking for its senders.
 
 use super::candidates::{Candidates, Verdict};
-use super::descent::Frontier;
+use super::frontier::Frontier;
 use super::receivers::Receivers;
+use super::request::Request;
+use super::resolution::MISSED;
 use super::revision::Revised;
 use super::terminal::Evaluator;
-use super::{MISSED, Request};
 use crate::world::Node;
 use equilux_formats::RowGroup;
 use std::collections::BinaryHeap;
@@ -93,8 +94,9 @@ impl<'a> Search<'a> {
         let receivers =
             Receivers::new(request.world, &request.receivers.elements(request.world)[elements.clone()]);
         let revised = request.revision.as_ref();
-        if let Some(group) =
-            revised.filter(|_| frontier.is_empty()).and_then(|r| r.untouched(request, &elements))
+        if let Some(group) = revised
+            .filter(|_| frontier.is_empty())
+            .and_then(|r| r.untouched(request.columns.start, &elements))
         {
             let width = group.columns.len();
             let sum = |i: usize| group.values[i * width..(i + 1) * width].iter().sum();
@@ -105,7 +107,8 @@ impl<'a> Search<'a> {
                 is_changed: false,
             };
         }
-        let revised = revised.map(|revision| Revised::new(request, revision, &receivers.viewers, &elements));
+        let revised =
+            revised.map(|revision| Revised::new(request.world, revision, &receivers.viewers, &elements));
         let missing = match &revised {
             Some(revised) => {
                 missing.iter().zip(revised.seen()).map(|(m, seen): (&f64, f64)| m - seen).collect()

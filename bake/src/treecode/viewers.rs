@@ -1,5 +1,6 @@
 //! Receivers as seen by the search: where they are, and which way they look if they all lie on one side of one face.
 
+use crate::geometry::bounds::box_corners;
 use crate::geometry::polygon::{Polygon, convex_hull};
 use crate::geometry::tolerance::IN_PLANE;
 use crate::world::{Node, World};
@@ -72,14 +73,4 @@ impl Viewers {
         let corner = world.faces[side.face.index()].corners[0];
         self.hull.iter().all(|&p| side.normal.dot(p - corner) <= IN_PLANE * reach)
     }
-}
-
-/// The corners of a box.
-pub fn box_corners(low: DVec3, high: DVec3) -> Polygon {
-    (0..8)
-        .map(|k| {
-            let pick = |bit: usize, axis: usize| if k >> bit & 1 == 0 { low[axis] } else { high[axis] };
-            DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
-        })
-        .collect()
 }

@@ -4,11 +4,11 @@
 //! Seen from a point outside, a convex solid hides exactly the pyramid over its silhouette: the loop of edges between
 //! faces that look at the point and faces that do not. What a mesh hides is told by [`crate::meshes`].
 
+use crate::geometry::bounds::box_corners;
 use crate::geometry::box_tree::{BoxTree, Inside};
 use crate::geometry::outline::{Edge, Outline, Plane};
 use crate::geometry::tolerance::FLATNESS;
 use crate::meshes::Mesh;
-use crate::treecode::box_corners;
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
