@@ -5,6 +5,7 @@
 
 use crate::elements::clusters;
 use crate::geometry::polygon::{Side, clip};
+use crate::geometry::tolerance::ON_CUT;
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
 use glam::DVec3;
 
@@ -35,10 +36,6 @@ impl std::str::FromStr for Cut {
         if offset.is_finite() { Ok(Self { axis, offset }) } else { Err(malformed()) }
     }
 }
-
-/// How far from the plane, relative to the geometry's extent, a corner still counts as on it: no slivers are made
-/// where a plane follows an edge.
-const ON_PLANE: f64 = 1e-9;
 
 /// Cut into `count` cells, each time the cell with the most elements at the median of its longest axis.
 pub fn bisect(whole: Geometry, count: usize) -> Vec<Geometry> {
@@ -77,7 +74,7 @@ fn median(geometry: &Geometry) -> Option<Cut> {
     places.sort_by(f64::total_cmp);
     let offset = places[places.len() / 2];
     // Halfway between two rows of a grid cuts no element.
-    let below = places.iter().rev().find(|&&p| p < offset - ON_PLANE * extent[axis]).copied();
+    let below = places.iter().rev().find(|&&p| p < offset - ON_CUT * extent[axis]).copied();
     Some(Cut { axis, offset: below.map_or(offset, |below| (below + offset) / 2.0) })
 }
 
@@ -90,7 +87,7 @@ fn bounds(geometry: &Geometry) -> (DVec3, DVec3) {
 /// side it looks at, and the faces of both sides keep what blocks light there.
 pub fn cut(geometry: &Geometry, plane: Cut) -> [Geometry; 2] {
     let (low, high) = bounds(geometry);
-    let tolerance = ON_PLANE * (high - low).max_element();
+    let tolerance = ON_CUT * (high - low).max_element();
     [-1.0, 1.0].map(|side| {
         let height = |p: DVec3| {
             let height = (p[plane.axis] - plane.offset) * side;
@@ -177,7 +174,7 @@ mod tests {
             }
             let whole: f64 = elements.iter().map(|e| e.area).sum();
             // Corners within a billionth of the plane belong to both sides: edges of up to 12 m each have a strip of it.
-            prop_assert!((sum - whole).abs() <= 12.0 * 6.0 * 4.0 * ON_PLANE * elements.len() as f64, "{sum} of {whole} m²");
+            prop_assert!((sum - whole).abs() <= 12.0 * 6.0 * 4.0 * ON_CUT * elements.len() as f64, "{sum} of {whole} m²");
         }
     }
 }

@@ -2,13 +2,11 @@
 //! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
 //! face sides themselves are halved by place.
 
+use crate::geometry::tolerance::SAME_LINE;
 use crate::rays::RayIndex;
 use equilux_formats::{ClusterTree, Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
-
-/// Steps between places that are smaller than this, relative to the extent, are rounding and no grid line.
-const SAME_LINE: f64 = 1e-6;
 
 /// An element with something before it nearer than this share of its face's extent is covered, and clusters with others
 /// that are.

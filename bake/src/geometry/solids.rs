@@ -7,6 +7,7 @@ use crate::geometry::disjoint_sets::DisjointSets;
 use crate::geometry::shells::{
     closed_shells, groups_by_edges, is_balanced, point_key, triangles, volume_and_area, winding_number,
 };
+use crate::geometry::tolerance::{CLOSED, WOUND};
 use equilux_formats::{Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -20,13 +21,6 @@ pub struct Solid {
     /// Its faces, sorted.
     pub faces: Vec<u32>,
 }
-
-/// How far the sum of a closed shell's areas, as vectors, may be from zero, relative to their sum as numbers: corners that
-/// several faces share are equal to the bit, but for those that lie on another's edge.
-const CLOSED: f64 = 1e-6;
-
-/// How far from 1 the winding number of a point inside may be; on a face it is ½.
-const AROUND: f64 = 1e-3;
 
 /// The solids of a part.
 pub fn solids(geometry: &Geometry) -> Vec<Solid> {
@@ -50,7 +44,7 @@ impl Solid {
         let own = || self.faces.iter().map(|&face| faces[face as usize].corners.as_slice());
         in_box
             && own().all(|corners| distance(point, corners) > depth)
-            && winding_number(point, own()) > 1.0 - AROUND
+            && winding_number(point, own()) > 1.0 - WOUND
     }
 }
 

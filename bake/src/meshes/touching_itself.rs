@@ -2,7 +2,7 @@
 
 use super::mesh::{Mesh, steps};
 use crate::geometry::box_tree::{BoxTree, Inside};
-use crate::geometry::tolerance::IN_PLANE;
+use crate::geometry::tolerance::{IN_PLANE, INSIDE_A_FACE};
 use glam::DVec3;
 
 /// Whether an edge of any face goes through the inside of another, or touches it. Where faces cross, one of them has
@@ -34,9 +34,6 @@ pub(super) fn touches_itself(mesh: &Mesh) -> bool {
     })
 }
 
-/// How far from the edges of a face, relative to the mesh, its inside begins: faces that share a corner touch there.
-const INSIDE: f64 = 1e-9;
-
 fn bounds(mesh: &Mesh, face: usize) -> (DVec3, DVec3) {
     let corners = mesh.around(face).iter().map(|&corner| mesh.corners[corner as usize]);
     corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
@@ -63,7 +60,8 @@ fn touches(mesh: &Mesh, face: usize, other: usize) -> bool {
         let (mut from, mut to) = (0.0f64, 1.0f64);
         for [c, d] in steps(around) {
             let side = normal.cross(at(d) - at(c)).normalize();
-            let (da, db) = (side.dot(a - at(c)) - INSIDE * size, side.dot(b - at(c)) - INSIDE * size);
+            let (da, db) =
+                (side.dot(a - at(c)) - INSIDE_A_FACE * size, side.dot(b - at(c)) - INSIDE_A_FACE * size);
             match (da > 0.0, db > 0.0) {
                 (false, false) => return false,
                 (false, true) => from = from.max(da / (da - db)),

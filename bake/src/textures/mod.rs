@@ -9,6 +9,7 @@ mod sums;
 
 use crate::geometry::box_tree::BoxTree;
 use crate::geometry::polygon::{Polygon, Side, clip};
+use crate::geometry::tolerance::{BENT, JOINED};
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -16,10 +17,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use sums::Sums;
 
-/// How far a quad made of two triangles may lie off one of them, in its longest edges: twice what the importer takes for flat.
-const BENT: f64 = 2e-4;
-/// How far elements that were cut out of joined surfaces may lie off these, relative to the largest coordinate.
-const JOINED: f64 = 1e-6;
 /// Cosine of the angle up to which an element and a triangle look to the same side.
 const SAME_SIDE: f64 = 0.5;
 

@@ -5,6 +5,7 @@
 //! large in its scene.
 
 use crate::geometry::shells::{Shell, closed_shells, winding_number};
+use crate::geometry::tolerance::IN_FRONT;
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
 
@@ -19,9 +20,6 @@ pub struct EnclosedLamp {
 
 /// Winding numbers above this are inside.
 const INSIDE: f64 = 0.99;
-
-/// How far in front of a surface the light that it emits is looked for, in diagonals of its instance's part.
-const IN_FRONT: f64 = 1e-5;
 
 /// A two-sided shell is a room if its diagonal is more than this share of the scene's.
 const LARGE: f64 = 0.5;

@@ -8,12 +8,9 @@
 
 use crate::geometry::box_tree::BoxTree;
 use crate::geometry::shells::{Shell, closed_shells, winding_number};
+use crate::geometry::tolerance::IN_FRONT;
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
-
-/// How far in front of a surface the light it sends is looked for, in diagonals of the shell: a panel that lies in a room's
-/// ceiling shines into the room. Larger than what f32 leaves of a plane.
-const IN_FRONT: f64 = 1e-5;
 
 /// How far corners of a surface that shines are drawn in, so that one in the corner of a room is looked for in the room.
 const DRAWN_IN: f64 = 0.01;

@@ -6,7 +6,7 @@ use crate::form_factor::wide::vectorised;
 use crate::geometry::bounds::box_corners;
 use crate::geometry::box_tree::Inside;
 use crate::geometry::shaft::Shaft;
-use crate::geometry::tolerance::FLATNESS;
+use crate::geometry::tolerance::ON_FACE;
 use crate::world::occluders::{Shape, Together};
 use crate::world::{Node, World};
 use equilux_formats::{Face, FaceId};
@@ -40,10 +40,6 @@ pub enum Verdict {
 
 /// Boxes larger than this share of receivers or sender are opened: smaller ones would only lengthen the list.
 const OPEN_ABOVE: f64 = 0.5;
-
-/// What is nearer to a face than this, relative to its extent or distance, may be part of it: its own elements are as far
-/// from it as corners that are kept in f32 may be from their plane.
-const ON_FACE: f64 = 4.0 * FLATNESS;
 
 /// Up to this many faces of a mesh hide one by one, which shows when one of them hides everything; more hide together.
 const FEW: usize = 8;

@@ -5,6 +5,7 @@ pub mod occluders;
 use crate::geometry::planes;
 use crate::geometry::polygon::{Polygon, convex_hull};
 use crate::geometry::solids::lit_behind;
+use crate::geometry::tolerance::SAME_AREA;
 use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
 use occluders::Occluders;
@@ -265,9 +266,6 @@ fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
         polygon,
     }
 }
-
-/// How far the area of the hull may exceed that of what it is the hull of, relative, to be the same polygon.
-const SAME_AREA: f64 = 1e-9;
 
 /// The union of two polygons in one plane if it is convex, else nothing: their convex hull, if it has their area.
 fn union(left: &Node, right: &Node, normal: DVec3) -> Polygon {
