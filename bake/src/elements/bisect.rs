@@ -4,6 +4,7 @@
 //! factors is exact inside the whole. Debelov & Sevastyanov, §2.
 
 use crate::elements::clusters;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Side, clip};
 use crate::geometry::tolerance::ON_CUT;
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
@@ -67,8 +68,7 @@ pub fn cut_all(whole: Geometry, planes: &[Cut]) -> Vec<Geometry> {
 
 /// The plane through the median centroid across the longest axis.
 fn median(geometry: &Geometry) -> Option<Cut> {
-    let (low, high) = bounds(geometry);
-    let extent = high - low;
+    let extent = bounds(geometry).size();
     let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b]).then(b.cmp(&a)))?;
     let mut places: Vec<f64> = geometry.elements.iter().map(|e| e.centroid[axis]).collect();
     places.sort_by(f64::total_cmp);
@@ -78,16 +78,14 @@ fn median(geometry: &Geometry) -> Option<Cut> {
     Some(Cut { axis, offset: below.map_or(offset, |below| (below + offset) / 2.0) })
 }
 
-fn bounds(geometry: &Geometry) -> (DVec3, DVec3) {
-    let corners = geometry.elements.iter().flat_map(|e| e.corners.as_slice());
-    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+fn bounds(geometry: &Geometry) -> Aabb {
+    Aabb::around(geometry.elements.iter().flat_map(|e| e.corners.as_slice()))
 }
 
 /// What lies below and above the plane. Elements and faces across it are clipped; an element in the plane goes to the
 /// side it looks at, and the faces of both sides keep what blocks light there.
 pub fn cut(geometry: &Geometry, plane: Cut) -> [Geometry; 2] {
-    let (low, high) = bounds(geometry);
-    let tolerance = ON_CUT * (high - low).max_element();
+    let tolerance = ON_CUT * bounds(geometry).size().max_element();
     [-1.0, 1.0].map(|side| {
         let height = |p: DVec3| {
             let height = (p[plane.axis] - plane.offset) * side;

@@ -1,6 +1,6 @@
 //! Geometry that knows nothing of light: polygons and their cuts, planes, outlines, shells, boxes and hierarchies of boxes.
 
-pub mod bounds;
+pub mod aabb;
 pub mod box_tree;
 pub mod disjoint_sets;
 pub mod outline;

@@ -3,6 +3,7 @@
 //! A solid is a shell of faces of which the side that has elements looks outwards. A room, whose faces look inwards, is
 //! none; nor is what is open somewhere, or what shines or reflects on both sides.
 
+use crate::geometry::aabb::Aabb;
 use crate::geometry::disjoint_sets::DisjointSets;
 use crate::geometry::shells::{
     closed_shells, groups_by_edges, is_balanced, point_key, triangles, volume_and_area, winding_number,
@@ -14,10 +15,8 @@ use std::collections::HashMap;
 
 /// A closed shell of faces that look outwards.
 pub struct Solid {
-    /// Lowest corner of its box.
-    pub low: DVec3,
-    /// Highest corner of its box.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// Its faces, sorted.
     pub faces: Vec<u32>,
 }
@@ -32,15 +31,14 @@ pub fn solids(geometry: &Geometry) -> Vec<Solid> {
 
 impl Solid {
     fn of(shell: Vec<u32>, faces: &[Face]) -> Self {
-        let corners = || shell.iter().flat_map(|&f| faces[f as usize].corners.iter().copied());
-        let low = corners().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
-        Self { low, high, faces: shell }
+        let bounds = Aabb::around(shell.iter().flat_map(|&f| &faces[f as usize].corners));
+        Self { bounds, faces: shell }
     }
 
     /// Whether `point` lies inside, deeper than `depth` below every face. `faces` are those of the solid's part.
     pub fn holds(&self, point: DVec3, depth: f64, faces: &[Face]) -> bool {
-        let in_box = (point - depth).cmpgt(self.low).all() && (point + depth).cmplt(self.high).all();
+        let in_box =
+            (point - depth).cmpgt(self.bounds.low).all() && (point + depth).cmplt(self.bounds.high).all();
         let own = || self.faces.iter().map(|&face| faces[face as usize].corners.as_slice());
         in_box
             && own().all(|corners| distance(point, corners) > depth)

@@ -2,6 +2,7 @@
 
 use super::mesh::{Edge, Mesh, steps};
 use super::touching_itself::touches_itself;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::box_tree::{BoxTree, Inside};
 use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::Face;
@@ -12,7 +13,9 @@ impl Mesh {
     /// The mesh of `group`, some of `faces`. They should hang together: loose triangles are taken, too, but then no edge
     /// is left out of the silhouette.
     pub fn from_faces(group: &[u32], faces: &[Face]) -> Self {
-        let tree = BoxTree::new(&group.iter().map(|&face| bounds(&faces[face as usize])).collect::<Vec<_>>());
+        let tree = BoxTree::new(
+            &group.iter().map(|&f| Aabb::around(&faces[f as usize].corners)).collect::<Vec<_>>(),
+        );
         let mut mesh = Self::without_edges(group, in_order(&tree).map(|i| group[i]).collect(), faces);
         mesh.edges = mesh.find_edges();
         mesh.touches_itself = touches_itself(&mesh);
@@ -37,8 +40,7 @@ impl Mesh {
         let mut sorted = group.to_vec();
         sorted.sort_unstable();
         Self {
-            low: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
-            high: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
+            bounds: Aabb::around(&corners),
             normals: order.iter().map(|&face| faces[face as usize].normal).collect(),
             faces: order,
             corners,
@@ -81,14 +83,14 @@ impl Mesh {
         let height = |&corner: &u32| normal.dot(self.corners[corner as usize] - origin);
         let furthest = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
         let rise = self.around(other).iter().map(height).fold(0.0, furthest);
-        if rise.abs() <= FLATNESS * (self.high - self.low).length() { 0.0 } else { rise }
+        if rise.abs() <= FLATNESS * self.bounds.diagonal() { 0.0 } else { rise }
     }
 
     /// Six times the volume behind the fronts of a closed mesh, below zero if that is all the space around a hollow.
     fn volume(&self) -> f64 {
         let cone = |face: usize| {
             let around = self.around(face);
-            let at = |i: usize| self.corners[around[i] as usize] - self.low;
+            let at = |i: usize| self.corners[around[i] as usize] - self.bounds.low;
             (1..around.len() - 1).map(|i| at(0).dot(at(i).cross(at(i + 1)))).sum::<f64>()
         };
         (0..self.faces.len()).map(cone).sum()
@@ -98,11 +100,6 @@ impl Mesh {
 /// A point as a key: equal to the bit.
 fn bits(p: DVec3) -> [u64; 3] {
     (p + 0.0).to_array().map(f64::to_bits)
-}
-
-fn bounds(face: &Face) -> (DVec3, DVec3) {
-    let low = face.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    (low, face.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max))
 }
 
 /// The things of a hierarchy such that neighbours are near each other.

@@ -1,13 +1,12 @@
 //! Faces that hide together: corners, edges, and what is known about the whole.
 
+use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 
 /// A mesh of planar convex faces, of any shape. Corners are the same if they are equal to the bit.
 pub struct Mesh {
-    /// Lowest corner of its box.
-    pub low: DVec3,
-    /// Highest corner of its box.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// The faces, as they are numbered outside; neighbours in this list are near each other.
     pub faces: Vec<u32>,
     /// All corners, once each.

@@ -93,9 +93,9 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     /// Whether the mesh may go through the sender, or touch it.
     fn may_touch(&self) -> bool {
         let (mesh, point) = (self.seen.mesh, self.seen.point);
-        let margin = APART * (mesh.high - mesh.low).length();
+        let margin = APART * mesh.bounds.diagonal();
         (mesh.touches_itself || !mesh.has(self.sender.face))
-            && self.sender.meets_box(mesh.low - point - margin, mesh.high - point + margin)
+            && self.sender.meets_box(mesh.bounds.moved(-point).grown(margin))
     }
 
     /// Where faces go through the sender or end on it: what is before its plane hides what is beside the seam.
@@ -173,9 +173,8 @@ fn place(seen: &SeenMesh, sender: &SeenPolygon) -> Place {
     if !seen.span.meets(&sender.span) {
         return Place::Aside;
     }
-    let (low, high) = (seen.mesh.low, seen.mesh.high);
-    let half = (high - low) / 2.0;
-    let (lowest, highest) = sender.heights_of_box((low + high) / 2.0 - seen.point, half);
+    let (centre, half) = (seen.mesh.bounds.centre(), seen.mesh.bounds.size() / 2.0);
+    let (lowest, highest) = sender.heights_of_box(centre - seen.point, half);
     if highest <= IN_PLANE * sender.reach {
         Place::Aside
     } else if lowest > APART * half.length() {

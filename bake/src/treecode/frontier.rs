@@ -75,6 +75,6 @@ fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
 }
 
 fn stays_closed(sender: &Node, viewers: &Viewers) -> bool {
-    let size = (sender.high - sender.low).length();
+    let size = sender.bounds.diagonal();
     size <= CLOSED * viewers.diameter.max(viewers.distance_to(sender))
 }

@@ -6,6 +6,7 @@
 //! down where shafts touch the change, not the entries.
 
 use super::viewers::Viewers;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::shaft::Shaft;
 use crate::world::{Node, World};
 use equilux_formats::{Geometry, RowGroup, Rows};
@@ -22,8 +23,7 @@ pub struct Change {
 
 /// Something convex that hides.
 struct Thing {
-    low: DVec3,
-    high: DVec3,
+    bounds: Aabb,
     corners: Vec<DVec3>,
 }
 
@@ -47,7 +47,7 @@ impl Change {
     pub fn add(&mut self, geometry: &Geometry, placement: DAffine3) {
         let alone = World::new([(geometry, placement)]);
         let things = alone.occluders.all.into_iter();
-        self.things.extend(things.map(|o| Thing { low: o.low, high: o.high, corners: o.corners }));
+        self.things.extend(things.map(|o| Thing { bounds: o.bounds, corners: o.corners }));
     }
 
     /// Whether there is none.
@@ -57,7 +57,7 @@ impl Change {
 
     /// Whether light from the sender to the viewers may have changed.
     pub fn touches(&self, world: &World, viewers: &Viewers, sender: &Node) -> bool {
-        let mut shaft = Shaft::between(viewers.bounds, (sender.low, sender.high));
+        let mut shaft = Shaft::between(viewers.bounds, sender.bounds);
         if let Some(flat) = &viewers.flat {
             shaft.bound(viewers.hull[0], -flat.normal);
         }
@@ -65,8 +65,7 @@ impl Change {
             shaft.bound(world.faces[side.face.index()].corners[0], -side.normal);
         }
         let touches = |thing: &Thing| {
-            !shaft.misses_box(thing.low, thing.high)
-                && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
+            !shaft.misses_box(&thing.bounds) && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
         };
         self.things.iter().any(touches)
     }

@@ -214,7 +214,7 @@ impl<'a> Search<'a> {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {
             return f64::INFINITY;
         }
-        let radius = (sender.high - sender.low).length() / 2.0;
+        let radius = sender.bounds.diagonal() / 2.0;
         let distance = self.receivers.viewers.distance_to(sender) + radius;
         if distance <= 2.0 * radius {
             return f64::INFINITY;
@@ -224,7 +224,7 @@ impl<'a> Search<'a> {
 
     /// Size over distance.
     fn slant(&self, sender: &Node) -> f64 {
-        let radius = (sender.high - sender.low).length() / 2.0;
+        let radius = sender.bounds.diagonal() / 2.0;
         radius / (self.receivers.viewers.distance_to(sender) + radius)
     }
 

@@ -2,6 +2,7 @@
 
 pub mod occluders;
 
+use crate::geometry::aabb::Aabb;
 use crate::geometry::planes;
 use crate::geometry::polygon::{Polygon, convex_hull};
 use crate::geometry::solids::lit_behind;
@@ -45,10 +46,8 @@ struct Placed {
 /// An element or cluster as a sender.
 #[derive(Debug, Clone)]
 pub struct Node {
-    /// Lowest corner of its box, metres.
-    pub low: DVec3,
-    /// Highest corner of its box, metres.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// Area, m².
     pub area: f64,
     /// What lies inside a cluster.
@@ -242,8 +241,7 @@ fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
 fn element_node(element: &Element) -> Node {
     let corners = element.corners.as_slice();
     Node {
-        low: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
-        high: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
+        bounds: Aabb::around(corners),
         area: element.area,
         children: None,
         side: Some(Side { face: element.face, normal: element.normal, material: element.material }),
@@ -258,8 +256,7 @@ fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
     };
     let polygon = side.map_or_else(Polygon::new, |side| union(left, right, side.normal));
     Node {
-        low: left.low.min(right.low),
-        high: left.high.max(right.high),
+        bounds: left.bounds.union(right.bounds),
         area: left.area + right.area,
         children: Some(children),
         side,
