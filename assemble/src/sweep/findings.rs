@@ -1,8 +1,8 @@
 //! What follows from comparing runs, in sentences: whether the default is a good choice, and what the scene did not need.
 
+use super::row::Row;
 use super::run::Run;
 use super::setting::{DEFAULT_TOLERANCE, Kind, Setting};
-use super::summary::Row;
 
 /// Errors that differ by less than this share of themselves are alike.
 const ALIKE: f64 = 0.05;

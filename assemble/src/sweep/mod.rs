@@ -13,6 +13,7 @@ mod page;
 pub mod points;
 mod process;
 mod reference;
+mod row;
 mod run;
 mod separation;
 mod setting;
@@ -30,11 +31,13 @@ use forecast::{forecast, matrix_bytes, memory_available};
 use grid::{SIZES, grid, metres};
 use process::{Ended, Runner};
 use reference::Reference;
+use row::Compared;
+pub use row::Row;
 use run::Run;
-use setting::{Kind, Setting};
+use setting::{Kind, Setting, Skipped};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-pub use summary::{Row, Summary};
+pub use summary::Summary;
 
 /// The share of the budget that may go into a reference.
 const FOR_REFERENCE: f64 = 1.0 / 3.0;
@@ -58,15 +61,6 @@ pub struct Options {
     pub out: PathBuf,
     /// Options for every run.
     pub more: Vec<String>,
-}
-
-/// A setting that was not run.
-#[derive(Debug, Clone)]
-pub struct Skipped {
-    /// The setting.
-    setting: Setting,
-    /// Why not.
-    why: String,
 }
 
 /// A sweep on its way.
@@ -121,7 +115,7 @@ pub fn sweep(options: &Options, monitor: &Monitor) -> Result<Summary> {
     };
     let (reference, compared) = match truth {
         Some(truth) => {
-            let compared = summary::Compared::with_file(options.truth.as_deref(), &truth);
+            let compared = Compared::with_file(options.truth.as_deref(), &truth);
             (truth, compared)
         }
         None => sweep.find_reference(size)?,
@@ -143,7 +137,7 @@ pub fn sweep(options: &Options, monitor: &Monitor) -> Result<Summary> {
 
 impl Sweep<'_> {
     /// The light that the finest exact run gathers, which takes no more than its share of the budget.
-    fn find_reference(&mut self, size: f64) -> Result<(Reference, summary::Compared)> {
+    fn find_reference(&mut self, size: f64) -> Result<(Reference, Compared)> {
         let mut ladder: Vec<Run> = vec![];
         for factor in SIZES.into_iter().chain([0.25]) {
             let setting = Setting::new(Kind::Parts { tolerance: 0.0 }, metres(size * factor));
@@ -168,7 +162,7 @@ impl Sweep<'_> {
         self.skipped.clear();
         let reference = Reference::of(finest);
         let coarser = ladder.len().checked_sub(2).map(|k| &ladder[k]);
-        Ok((reference.clone(), summary::Compared::with_run(finest, coarser, &reference)))
+        Ok((reference.clone(), Compared::with_run(finest, coarser, &reference)))
     }
 
     /// Run all settings that the time is enough for.

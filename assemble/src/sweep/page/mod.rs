@@ -5,7 +5,8 @@ mod plots;
 mod tables;
 
 use super::findings::{percent, seconds};
-use super::summary::{Row, Summary};
+use super::row::Row;
+use super::summary::Summary;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The page.

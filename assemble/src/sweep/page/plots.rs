@@ -2,8 +2,9 @@
 
 use super::chart::{Chart, Mark, Series};
 use crate::sweep::findings::percent;
+use crate::sweep::row::Row;
 use crate::sweep::setting::{DEFAULT_TOLERANCE, Kind};
-use crate::sweep::summary::{Exchange, Row, Summary};
+use crate::sweep::summary::{Exchange, Summary};
 use maud::Markup;
 
 /// A cost and an error of a run, if it has both.

@@ -2,9 +2,10 @@
 
 use super::plots::bytes;
 use crate::sweep::findings::{percent, seconds};
+use crate::sweep::row::Row;
 use crate::sweep::separation::Source;
 use crate::sweep::setting::Kind;
-use crate::sweep::summary::{Row, Summary};
+use crate::sweep::summary::Summary;
 use maud::{Markup, html};
 
 /// A table of texts; the first columns, as many as `left`, are aligned left, as is the last.
