@@ -13,6 +13,7 @@ use crate::lightmap::{self, Lightmap, Saved};
 use crate::picture::{shade, strip, wireframe, write_png};
 use crate::points::{self, Place};
 use crate::render::{self, Reference};
+use crate::report::{cpu_seconds, cpu_since};
 use crate::run::{Job, Pictures};
 use crate::scene_light::SceneLight;
 use crate::{elements_csv, gltf_export};
@@ -57,6 +58,8 @@ pub struct Written {
     pub notes: Vec<String>,
     /// What the light of points took.
     pub point_time: Duration,
+    /// The same in processor time, seconds, where the system tells.
+    pub point_cpu: Option<f64>,
 }
 
 /// The file name of the light of points.
@@ -108,9 +111,9 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
     };
     let mut written = write_tables(job, &folder, scene.origin, light, exposure)?;
     let lightmaps = write_lightmaps(job, &folder, scene, light, exposure, monitor)?;
-    let start = Instant::now();
+    let (start, cpu) = (Instant::now(), cpu_seconds());
     let points = write_points(&folder, scene.origin, light, monitor)?;
-    let point_time = start.elapsed();
+    let (point_time, point_cpu) = (start.elapsed(), cpu_since(cpu));
     let mut notes = Vec::new();
     if let Some(shot) = &job.shot {
         let lit = (light.equation, light.outcome);
@@ -123,7 +126,7 @@ pub fn write_all(job: &Job, scene: &Scene, light: &Light, monitor: &Monitor) -> 
         notes.extend(saved.notes);
     }
     lines.extend(written.iter().map(|path| path.display().to_string()));
-    Ok(Written { paths: lines, notes, point_time })
+    Ok(Written { paths: lines, notes, point_time, point_cpu })
 }
 
 fn write_points(folder: &Path, origin: DVec3, light: &Light, monitor: &Monitor) -> Result<Option<Saved>> {

@@ -40,6 +40,7 @@ pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Secon
         t3: longest(&own).max(longest(&coupling)) + longest(&solve) + longest(&transfer),
         exchange_overhead: times.overhead.total().as_secs_f64(),
         points: 0.0,
+        points_cpu: None,
         solve: 0.0,
         solve_cpu: None,
         total: 0.0,

@@ -141,6 +141,8 @@ pub struct Seconds {
     pub exchange_overhead: f64,
     /// The light of points that were asked for; wall time.
     pub points: f64,
+    /// The same in processor time, where the system tells.
+    pub points_cpu: Option<f64>,
     /// Wall time from the scene's file until the light of all elements is known: everything but proofs and outputs.
     pub solve: f64,
     /// The same in processor time, where the system tells.
@@ -262,4 +264,9 @@ pub fn cpu_seconds() -> Option<f64> {
     let after_name = stat.rsplit_once(')')?.1;
     let ticks: Vec<f64> = after_name.split_whitespace().skip(11).take(2).flat_map(str::parse).collect();
     (ticks.len() == 2).then(|| ticks.iter().sum::<f64>() / TICKS_PER_SECOND)
+}
+
+/// Processor time since [`cpu_seconds`] was `start`, seconds; none where the system does not tell.
+pub fn cpu_since(start: Option<f64>) -> Option<f64> {
+    cpu_seconds().zip(start).map(|(now, start)| now - start)
 }

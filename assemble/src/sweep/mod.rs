@@ -9,6 +9,7 @@ mod folder;
 mod forecast;
 pub mod front;
 mod grid;
+mod numbers;
 mod page;
 pub mod points;
 mod process;

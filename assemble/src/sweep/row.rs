@@ -12,15 +12,15 @@ use std::path::Path;
 /// What runs are compared with.
 #[derive(Debug, Clone, Serialize)]
 pub struct Compared {
-    /// For a person.
+    /// The reference in words.
     pub what: String,
     /// Number of points.
     pub points: usize,
-    /// Its own error, as a share of the mean; none if unknown.
+    /// The error of the reference itself, as a share of the mean; none if unknown.
     pub own_error: Option<f64>,
-    /// Errors below this cannot be told from none.
+    /// Errors below this cannot be told from zero.
     pub resolves: f64,
-    /// The setting of the run it comes from, if it does.
+    /// The setting of the run that the reference is taken from, if any.
     #[serde(skip)]
     pub setting: Option<Setting>,
 }
@@ -28,26 +28,28 @@ pub struct Compared {
 /// A run with its errors.
 #[derive(Debug, Clone, Serialize)]
 pub struct Row {
-    /// For a person.
+    /// The setting in words.
     pub label: String,
-    /// The command line that gives it.
+    /// The command line that repeats it.
     pub command: String,
-    /// What was asked for.
+    /// The setting.
     #[serde(flatten)]
     pub setting: Setting,
     /// Number of elements.
     pub elements: usize,
     /// Wall time from the file to the light of all elements.
     pub seconds_solve: f64,
-    /// The same in processor time, if the system tells.
+    /// The same in processor time, if the system reports it.
     pub seconds_solve_cpu: Option<f64>,
     /// Wall time to gather light at the points.
     pub seconds_points: f64,
+    /// The same in processor time, if the system reports it.
+    pub seconds_points_cpu: Option<f64>,
     /// Wall time of the process.
     pub seconds_process: f64,
-    /// Form factors as they are kept.
+    /// Size of the stored form factors.
     pub bytes_stored: usize,
-    /// The most the process held.
+    /// Peak memory of the process.
     pub bytes_peak: Option<usize>,
     /// Rounds of the exchange.
     pub rounds: usize,
@@ -57,16 +59,16 @@ pub struct Row {
     pub on_gathered_front: bool,
     /// On the front of the error of elements against seconds to solve.
     pub on_elements_front: bool,
-    /// Whether it is what a person gets without options.
+    /// Whether these are the default settings.
     pub is_default: bool,
-    /// Whether the reference comes from it.
+    /// Whether the reference is taken from this run.
     pub is_reference: bool,
     /// The paper's steps.
     pub steps: Seconds,
 }
 
 impl Compared {
-    /// With a file.
+    /// A file of reference light.
     pub fn with_file(path: Option<&Path>, truth: &Reference) -> Self {
         let name = path.map(|path| path.display().to_string()).unwrap_or_default();
         Self {
@@ -78,7 +80,7 @@ impl Compared {
         }
     }
 
-    /// With the finest run, whose own error is told by the next coarser one.
+    /// The finest run. The difference from the next coarser one estimates its own error.
     pub fn with_run(finest: &Run, coarser: Option<&Run>, reference: &Reference) -> Self {
         let own = coarser.map(|run| Errors::of(&run.light, reference).gathered);
         Self {
@@ -107,6 +109,7 @@ impl Row {
             seconds_solve: facts.seconds.solve,
             seconds_solve_cpu: facts.seconds.solve_cpu,
             seconds_points: facts.seconds.points,
+            seconds_points_cpu: facts.seconds.points_cpu,
             seconds_process: run.wall,
             bytes_stored: facts.bytes.stored,
             bytes_peak: facts.bytes.peak_rss,
@@ -120,17 +123,30 @@ impl Row {
         }
     }
 
-    /// Seconds to solve and gather, and the error at the points.
-    pub fn gathered(&self) -> Option<(f64, f64)> {
-        Some((self.seconds_solve + self.seconds_points, self.errors.gathered))
+    /// Seconds to solve and to gather, by [`Row::clock`], and the error of light gathered at the points.
+    pub fn gathered(&self) -> (f64, f64) {
+        let seconds = match self.cpu() {
+            Some((solve, points)) => solve + points,
+            None => self.seconds_solve + self.seconds_points,
+        };
+        (seconds, self.errors.gathered)
     }
 
-    /// Seconds to solve, and the error of flat elements.
-    pub fn flat(&self) -> Option<(f64, f64)> {
-        Some((self.seconds_solve, self.errors.elements))
+    /// Seconds to solve, by [`Row::clock`], and the error of light that is constant on each element.
+    pub fn flat(&self) -> (f64, f64) {
+        (self.cpu().map_or(self.seconds_solve, |(solve, _)| solve), self.errors.elements)
     }
 
-    /// Whether it competes with the others: the reference would win against itself.
+    /// What the seconds of costs are: processor time of all threads where the system reports it, else wall time.
+    pub fn clock(&self) -> &'static str {
+        if self.cpu().is_some() { "CPU time" } else { "wall time" }
+    }
+
+    fn cpu(&self) -> Option<(f64, f64)> {
+        self.seconds_solve_cpu.zip(self.seconds_points_cpu)
+    }
+
+    /// Whether it competes with the others: it is a run of parts, and not the reference, which has no error against itself.
     pub fn competes(&self) -> bool {
         self.setting.is_ours() && !self.is_reference
     }

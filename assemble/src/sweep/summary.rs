@@ -118,19 +118,18 @@ impl Summary {
 }
 
 /// Which of our rows are on the front of this cost and error.
-fn on_front(rows: &[Row], of: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<bool> {
+fn on_front(rows: &[Row], of: impl Fn(&Row) -> (f64, f64)) -> Vec<bool> {
     let none = (f64::NAN, f64::NAN);
     let choices: Vec<(f64, f64)> =
-        rows.iter().map(|row| of(row).filter(|_| row.competes()).unwrap_or(none)).collect();
+        rows.iter().map(|row| if row.competes() { of(row) } else { none }).collect();
     let chosen = front(&choices);
     (0..rows.len()).map(|row| chosen.contains(&row)).collect()
 }
 
 /// The quickest of our rows that errs no more.
-fn quickest(rows: &[Row], error: f64, of: impl Fn(&Row) -> Option<(f64, f64)>) -> Option<usize> {
-    let good = |&row: &usize| rows[row].competes() && of(&rows[row]).is_some_and(|(_, e)| e <= error);
-    let seconds = |row: usize| of(&rows[row]).map_or(f64::INFINITY, |(seconds, _)| seconds);
-    (0..rows.len()).filter(good).min_by(|&a, &b| seconds(a).total_cmp(&seconds(b)))
+fn quickest(rows: &[Row], error: f64, of: impl Fn(&Row) -> (f64, f64)) -> Option<usize> {
+    let good = |&row: &usize| rows[row].competes() && of(&rows[row]).1 <= error;
+    (0..rows.len()).filter(good).min_by(|&a, &b| of(&rows[a]).0.total_cmp(&of(&rows[b]).0))
 }
 
 fn exchanges(runs: &[Run]) -> Vec<Exchange> {

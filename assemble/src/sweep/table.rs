@@ -6,7 +6,7 @@ use super::setting::Kind;
 use crate::points::Place;
 
 /// The first line: seconds are wall time unless `cpu`, errors shares of the mean, and what is not known is empty.
-pub const HEADER: [&str; 24] = [
+pub const HEADER: [&str; 25] = [
     "method",
     "element_size_m",
     "tolerance",
@@ -17,6 +17,7 @@ pub const HEADER: [&str; 24] = [
     "seconds_solve",
     "seconds_solve_cpu",
     "seconds_points",
+    "seconds_points_cpu",
     "seconds_process",
     "bytes_stored",
     "bytes_peak",
@@ -72,6 +73,7 @@ fn line(row: &Row) -> [String; HEADER.len()] {
         row.seconds_solve.to_string(),
         number(row.seconds_solve_cpu),
         row.seconds_points.to_string(),
+        number(row.seconds_points_cpu),
         row.seconds_process.to_string(),
         row.bytes_stored.to_string(),
         number(row.bytes_peak.map(|bytes| bytes as f64)),
