@@ -1,10 +1,10 @@
 //! Pictures, models and tables say what they were given.
 
-use equilux_assemble::camera::View;
-use equilux_assemble::canvas::Canvas;
-use equilux_assemble::exposure::Exposure;
-use equilux_assemble::scene_light::SceneLight;
-use equilux_assemble::{elements_csv, gltf_export, picture};
+use equilux_assemble::outputs::scene_light::SceneLight;
+use equilux_assemble::picture::camera::View;
+use equilux_assemble::picture::canvas::Canvas;
+use equilux_assemble::picture::exposure::Exposure;
+use equilux_assemble::{outputs::elements_csv, outputs::model, picture};
 use equilux_bake::clusters;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
@@ -221,7 +221,7 @@ fn the_model_holds_every_element_in_place_and_colour() {
     let fixture = Fixture::new();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("result.glb");
-    gltf_export::write(&path, &fixture.light(), Exposure(0.2)).unwrap();
+    model::write(&path, &fixture.light(), Exposure(0.2)).unwrap();
 
     let gltf::Gltf { document, blob } = gltf::Gltf::open(&path).unwrap();
     let nodes: Vec<_> = document.default_scene().unwrap().nodes().collect();

@@ -88,16 +88,17 @@ pub struct Material {
     pub textures: Textures,
 }
 
-/// How a part's own equilibrium is found. The answer does not depend on it.
+/// The solver of a part's own equilibrium. The answer does not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum LocalSolver {
-    /// LU factors of I − ρF, kept with the part.
+    /// LU factors of I − ρF, kept with the part
     Direct,
-    /// Gauss-Seidel sweeps over the stored rows.
+    /// Gauss-Seidel iteration over the stored rows
     GaussSeidel,
-    /// Progressive refinement: shoot the largest unshot radiosity first (Southwell).
+    /// Progressive refinement: the brightest unshot element first (Southwell)
     Progressive,
-    /// GMRES on the stored rows.
+    /// GMRES on the stored rows
     Iterative,
 }

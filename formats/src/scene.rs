@@ -110,15 +110,16 @@ pub struct PunctualLight {
     pub angle: f64,
 }
 
-/// What the intensities of a file's lights mean. Radiances of surfaces are W/(m² sr) in all of them.
+/// The units of the intensities of a file's lights. Radiances of surfaces are W/(m² sr) in all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum LightUnits {
-    /// W/sr and W/m², number for number what glTF calls candela and lux.
+    /// W/sr and W/m², number for number what glTF calls candela and lux
     Radiometric,
-    /// Candela and lux of light of 683 lm/W, as Blender writes them by default (lighting mode Standard).
+    /// Candela and lux of light of 683 lm/W, as Blender writes by default (lighting mode Standard)
     Photometric,
-    /// Watts of whole lamps, as Blender writes them in lighting mode Raw, and did before version 3.4: W/(4π) to each sr.
-    /// Parallel light is W/m².
+    /// Watts of whole lamps, as Blender writes in lighting mode Raw, and did before version 3.4: W/(4π) to each sr; W/m² of
+    /// suns
     BlenderRaw,
 }
 

@@ -1,9 +1,11 @@
 //! What an edit of a level costs against starting from nothing: move a crate, switch a lamp, repaint a wall.
 //! `cargo bench -p equilux-tests --bench edits -- [ROOMS] [ELEMENT SIZE] [TOLERANCE]`
 
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::{Job, Pictures, run};
+use equilux_assemble::run::job::Job;
+use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::Division;
@@ -21,12 +23,12 @@ fn main() {
     let (rooms, size, tolerance) = (number(0, 32.0) as usize, number(1, 0.3), number(2, 0.01));
     let workshop = Workshop::new();
     let mut job = workshop.job(Division::Authored);
-    job.preparation.element_size = Some(ElementSize::Metres(size));
-    job.preparation.resolution = Resolution::for_tolerance(tolerance);
-    job.goal.error = 1e-6;
-    job.exact_rows = ExactRows::About(0);
-    job.pictures = Pictures::None;
-    job.warm = true;
+    job.settings.preparation.element_size = Some(ElementSize::Metres(size));
+    job.settings.preparation.resolution = Resolution::for_tolerance(tolerance);
+    job.settings.goal.error = 1e-6;
+    job.outputs.exact_rows = ExactRows::About(0);
+    job.outputs.pictures = Pictures::None;
+    job.settings.warm = true;
     println!(
         "{:<34}{:>10}{:>12}{:>10}{:>8}{:>9}{:>9}",
         "", "elements", "computed", "of all", "rounds", "seconds", "faster"
@@ -68,7 +70,16 @@ fn main() {
     level[2].part.as_mut().expect("a part").materials[0].reflectance = [0.8, 0.3, 0.2];
     said("a wall repainted", &level, &job, Some(first));
     let elsewhere = Workshop::new();
-    said("the same from nothing", &level, &Job { cache: elsewhere.path("cache"), ..job.clone() }, None);
+    said(
+        "the same from nothing",
+        &level,
+        &{
+            let mut job = job.clone();
+            job.settings.cache = elsewhere.path("cache");
+            job
+        },
+        None,
+    );
 }
 
 /// Furnished rooms, and a crate of its own in each.

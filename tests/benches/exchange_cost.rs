@@ -5,7 +5,8 @@
 //! `cargo bench -p equilux-tests --bench exchange_cost -- [rooms|cells|corridor] [SIZE…]`: element sizes in metres. Equilibria
 //! are summed over threads; with RAYON_NUM_THREADS=1 shares are of one thread's time.
 
-use equilux_assemble::exchange::{Method, Outcome};
+use equilux_assemble::exchange::outcome::Outcome;
+use equilux_assemble::exchange::settings::Method;
 use equilux_bake::treecode::Resolution;
 use equilux_tests::assembled::Assembled;
 use equilux_tests::corridors::{cells, corridor, level};

@@ -3,12 +3,17 @@
 //! `cargo bench -p equilux-tests --bench live -- [ROOMS] [ELEMENT SIZE] [PAIRS] [TOLERANCE]`
 //! Lights are at most as many as rounds: a large tolerance makes these quick.
 
-use equilux_assemble::exchange::{Known, Method, StepTimes};
+use equilux_assemble::equation::observer::Observer;
+use equilux_assemble::exchange::listener::{FinishedRound, Unobserved};
+use equilux_assemble::exchange::outcome::Convergence;
+use equilux_assemble::exchange::settings::Method;
+use equilux_assemble::exchange::step_times::StepTimes;
 use equilux_assemble::live::Live;
-use equilux_assemble::observer::{Observer, Passed, Unobserved};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::{Job, Pictures, run_observed};
+use equilux_assemble::run::job::Job;
+use equilux_assemble::run::run_observed;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::Division;
@@ -31,11 +36,11 @@ fn main() {
         furnished(rooms).into_iter().map(|part| Node::new(&part.name.clone(), part)).collect();
     Model::of(&nodes).write(&workshop.path("scene.glb"));
     let mut job = workshop.job(Division::Authored);
-    job.preparation.element_size = Some(ElementSize::Metres(size));
-    job.preparation.resolution = Resolution::for_tolerance(number(3, 0.3));
+    job.settings.preparation.element_size = Some(ElementSize::Metres(size));
+    job.settings.preparation.resolution = Resolution::for_tolerance(number(3, 0.3));
     // Many rounds, so that there is something to see.
-    (job.method, job.goal.error) = (Method::Jacobi, 1e-12);
-    (job.exact_rows, job.pictures) = (ExactRows::About(0), Pictures::None);
+    (job.settings.method, job.settings.goal.error) = (Method::Jacobi, 1e-12);
+    (job.outputs.exact_rows, job.outputs.pictures) = (ExactRows::About(0), Pictures::None);
     let first = measured(&job, false);
     println!("{} elements, {} rounds; from nothing {:.1} s", first.elements, first.rounds, first.seconds);
     println!("{:>24}{:>24}{:>24}", "run, s", "run, CPU-s", "exchange, a s");
@@ -134,10 +139,10 @@ fn fast_rounds(observer: &dyn Observer, report: &Report, lights: &AtomicUsize) -
     let (start, before, mut number) = (Instant::now(), lights.load(Ordering::Relaxed), 0);
     while start.elapsed() < Duration::from_secs(2) {
         number += 1;
-        observer.round(&Passed {
+        observer.round(&FinishedRound {
             instances: &instances,
             number,
-            known: Known::default(),
+            convergence: Convergence::default(),
             times: &times,
             is_last: false,
             radiosity: &radiosity,

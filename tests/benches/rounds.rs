@@ -1,7 +1,7 @@
 //! Rounds to a proved bound, by method: rooms in a row behind openings of any width, and furnished rooms cut by planes.
 //! `cargo bench -p equilux-tests --bench rounds -- [corridor|cells] [PARTS…]`
 
-use equilux_assemble::exchange::Method;
+use equilux_assemble::exchange::settings::Method;
 use equilux_bake::treecode::Resolution;
 use equilux_tests::assembled::Assembled;
 use equilux_tests::corridors::{cells, corridor};
@@ -68,7 +68,7 @@ fn table(name: &str, mut scene: Assembled) -> Vec<f64> {
             let off = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
             let rounds =
                 if outcome.converged { outcome.rounds.len().to_string() } else { format!(">{MOST}") };
-            let ratio = outcome.known.error_bound / off.max(f64::MIN_POSITIVE);
+            let ratio = outcome.convergence.error_bound / off.max(f64::MIN_POSITIVE);
             print!("{:>16}", format!("{rounds} {seconds:.2} {ratio:.0}"));
             ratios.push(ratio);
         }

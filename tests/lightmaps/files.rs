@@ -1,7 +1,7 @@
 //! The files that `--lightmaps` leaves behind.
 
-use equilux_assemble::lightmap::{Units, Wanted};
-use equilux_assemble::run::Pictures;
+use equilux_assemble::lightmap::{LightmapOptions, Units};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::prepare::Division;
 use equilux_tests::curved::sphere;
 use equilux_tests::model::{Model, Node};
@@ -38,8 +38,8 @@ pub fn baked(nodes: &[Node], units: Units) -> Workshop {
 fn divided(nodes: &[Node], units: Units, division: Division) -> Workshop {
     let workshop = Workshop::with(nodes);
     let mut job = workshop.job(division);
-    job.lightmaps = Some(Wanted { texel_size: Some(0.05), units, directions: false });
-    job.pictures = Pictures::None;
+    job.outputs.lightmaps = Some(LightmapOptions { texel_size: Some(0.05), units, directions: false });
+    job.outputs.pictures = Pictures::None;
     assembled(&job);
     workshop
 }
@@ -162,8 +162,9 @@ fn directions_point_to_where_light_comes_from() {
     let lamp = rectangle(part(grey(0.0, 1000.0)), low, 0.02 * DVec3::X, 0.02 * DVec3::Z);
     let workshop = Workshop::with(&[Node::new("room", black), Node::new("lamp", lamp)]);
     let mut job = workshop.job(Division::Authored);
-    job.lightmaps = Some(Wanted { texel_size: Some(0.1), units: Units::Irradiance, directions: true });
-    job.pictures = Pictures::None;
+    job.outputs.lightmaps =
+        Some(LightmapOptions { texel_size: Some(0.1), units: Units::Irradiance, directions: true });
+    job.outputs.pictures = Pictures::None;
     assembled(&job);
     let list = std::fs::read(workshop.path("out/scene/lightmaps.json")).expect("a list");
     let list: Value = serde_json::from_slice(&list).expect("JSON");
@@ -184,7 +185,8 @@ fn directions_point_to_where_light_comes_from() {
     assert!(seen > 100, "{seen} texels are lit");
     assert!(directions.iter().any(|d| d[1] > 0.99), "the floor below the lamp looks straight up");
 
-    job.lightmaps = Some(Wanted { directions: false, ..job.lightmaps.expect("asked for") });
+    job.outputs.lightmaps =
+        Some(LightmapOptions { directions: false, ..job.outputs.lightmaps.expect("asked for") });
     assembled(&job);
     assert!(!workshop.path("out/scene").join(name).exists(), "directions of an earlier run are gone");
 }

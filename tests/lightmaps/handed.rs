@@ -2,8 +2,8 @@
 
 use super::{lookup, point_of, scene};
 use equilux_assemble::lightmap::atlas::{Atlas, Tile};
-use equilux_assemble::lightmap::{Units, Wanted};
-use equilux_assemble::run::Pictures;
+use equilux_assemble::lightmap::{LightmapOptions, Units};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
@@ -133,9 +133,10 @@ fn a_readable_floor_under_an_even_sky_is_even() {
     let workshop = Workshop::new();
     Model::of(&[Node::new("floor", floor)]).write(&workshop.path("scene.glb"));
     let mut job = workshop.job(Division::Authored);
-    job.lightmaps = Some(Wanted { texel_size: Some(0.05), units: Units::Irradiance, directions: false });
-    job.sky = Some(equilux_assemble::gather::sky::Sky::Uniform([1.0; 3]));
-    job.pictures = Pictures::None;
+    job.outputs.lightmaps =
+        Some(LightmapOptions { texel_size: Some(0.05), units: Units::Irradiance, directions: false });
+    job.settings.sky = Some(equilux_assemble::gather::sky::Sky::Uniform([1.0; 3]));
+    job.outputs.pictures = Pictures::None;
     let report = assembled(&job);
     assert!(!report.notes.iter().any(|note| note.contains("TEXCOORD_1")), "kept: {:?}", report.notes);
     let (_, texels) = super::files::texels(&workshop.path("out/scene/lightmap.exr"));

@@ -6,12 +6,12 @@ mod skies;
 mod spots;
 mod units;
 
-use equilux_assemble::gather::average::Piece;
+use equilux_assemble::gather::Gather;
 use equilux_assemble::gather::faces::Plane;
+use equilux_assemble::gather::lights::Lights;
 use equilux_assemble::gather::outside::lights;
+use equilux_assemble::gather::piece::Piece;
 use equilux_assemble::gather::sky::Sky;
-use equilux_assemble::gather::{Gather, Lights};
-use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
@@ -205,9 +205,13 @@ fn half_open() -> Part {
 fn a_uniform_sky_lights_the_floor_of_an_open_box_through_its_opening() {
     let workshop = Workshop::with(&[Node::new("box", half_open())]);
     let job = workshop.job(Division::Authored);
-    let preparation = Preparation { element_size: Some(ElementSize::Metres(0.5)), ..job.preparation };
+    let preparation =
+        Preparation { element_size: Some(ElementSize::Metres(0.5)), ..job.settings.preparation.clone() };
     let table = workshop.path("elements.csv");
-    let job = Job { sky: Some(Sky::Uniform([2.0; 3])), preparation, elements: Some(table.clone()), ..job };
+    let mut job = job;
+    job.settings.sky = Some(Sky::Uniform([2.0; 3]));
+    job.settings.preparation = preparation;
+    job.outputs.elements = Some(table.clone());
     let report = assembled(&job);
     assert!(report.form_factors_computed > 0, "the sky is seen");
     let found = Table::read(&table);
@@ -234,7 +238,8 @@ fn a_uniform_sky_lights_the_floor_of_an_open_box_through_its_opening() {
     }
     assert_eq!(floors, 16);
 
-    let brighter = Job { sky: Some(Sky::Uniform([4.0; 3])), ..job };
+    let mut brighter = job;
+    brighter.settings.sky = Some(Sky::Uniform([4.0; 3]));
     let again = assembled(&brighter);
     assert_eq!(again.form_factors_computed, 0, "another sky");
     let ratio = Table::read(&table).number(0, "H_g") / found.number(0, "H_g");
@@ -249,9 +254,16 @@ fn light_of_lamps_goes_to_and_fro_as_that_of_surfaces() {
     let workshop = Workshop::new();
     with_light(model, lamp).write(&workshop.path("scene.glb"));
     let job = workshop.job(Division::Authored);
-    let preparation = Preparation { element_size: Some(ElementSize::Metres(0.25)), ..job.preparation };
+    let preparation =
+        Preparation { element_size: Some(ElementSize::Metres(0.25)), ..job.settings.preparation.clone() };
     let table = workshop.path("elements.csv");
-    let report = assembled(&Job { preparation, elements: Some(table.clone()), verify: true, ..job });
+    let report = assembled(&{
+        let mut job = job;
+        job.settings.preparation = preparation;
+        job.outputs.elements = Some(table.clone());
+        job.outputs.verify = true;
+        job
+    });
     let found = Table::read(&table);
     let arriving: f64 =
         (0..found.rows()).map(|row| found.number(row, "area") * found.number(row, "H_r")).sum();

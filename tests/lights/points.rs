@@ -2,7 +2,7 @@
 
 use super::{floor, light, of_file, placed};
 use equilux_assemble::gather::Gather;
-use equilux_assemble::points::{Place, light as light_at};
+use equilux_assemble::gather::points::{Place, light as light_at};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{LightKind, Rgb};

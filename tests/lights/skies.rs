@@ -2,7 +2,7 @@
 
 use super::floor;
 use equilux_assemble::gather::sky::Sky;
-use equilux_assemble::run::{Job, Pictures};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::prepare::Division;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, part, rectangle, solid};
@@ -42,7 +42,12 @@ fn a_sky_picture_shines_from_where_it_shows_light() {
             let sky = picture(&workshop, ending, |to| if to.dot(towards) > 0.0 { 1.0 } else { 0.0 });
             let job = workshop.job(Division::Authored);
             let table = workshop.path("elements.csv");
-            assembled(&Job { sky: Some(Sky::Picture(sky)), elements: Some(table.clone()), ..job });
+            assembled(&{
+                let mut job = job;
+                job.settings.sky = Some(Sky::Picture(sky));
+                job.outputs.elements = Some(table.clone());
+                job
+            });
             let found = Table::read(&table).number(0, "H_r");
             // Half the sky is bright: all of what a surface that looks there sees, none of what one looking away does, and half of
             // what the others do; pixels and cells are a few degrees wide.
@@ -72,12 +77,14 @@ fn right_of_the_middle_of_a_sky_picture_is_plus_x() {
         let [first, second] = ["#?RADIANCE", "#?RGBE"].map(|signature| {
             let sky = workshop.path("sky.hdr");
             std::fs::write(&sky, radiance_file(signature, column)).expect("a picture");
-            let job = Job {
-                sky: Some(Sky::Picture(sky)),
-                elements: Some(table.clone()),
-                ..workshop.job(Division::Authored)
-            };
-            assembled(&Job { pictures: Pictures::None, ..job });
+            let mut job = workshop.job(Division::Authored);
+            job.settings.sky = Some(Sky::Picture(sky));
+            job.outputs.elements = Some(table.clone());
+            assembled(&{
+                let mut job = job;
+                job.outputs.pictures = Pictures::None;
+                job
+            });
             std::fs::read(&table).expect("a table")
         });
         assert!(first == second, "one picture with two signatures, column {column}");
@@ -100,7 +107,9 @@ fn a_sky_does_not_turn_with_the_scene() {
     let sky = picture(&workshop, "exr", |to| if to.x > 0.0 { 1.0 } else { 0.0 });
     let job = workshop.job(Division::Authored);
     let table = workshop.path("elements.csv");
-    let job = Job { sky: Some(Sky::Picture(sky)), elements: Some(table.clone()), ..job };
+    let mut job = job;
+    job.settings.sky = Some(Sky::Picture(sky));
+    job.outputs.elements = Some(table.clone());
     let sheet = rectangle(part(grey(0.0, 0.0)), DVec3::ZERO, DVec3::Y, DVec3::Z);
     // Half a turn about y makes what looked to +x look to −x.
     for (rotation, expected) in

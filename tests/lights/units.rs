@@ -1,7 +1,7 @@
 //! What the intensities of a file's lamps mean, and what is said about it.
 
 use super::floor;
-use equilux_assemble::run::{Job, Pictures};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::prepare::Division;
 use equilux_formats::LightUnits;
 use equilux_tests::model::{Model, Node};
@@ -28,8 +28,14 @@ fn lit_floor(generator: Option<&str>, lamp: Value) -> Model {
 /// The light that the floor absorbs, W, and the notes.
 fn absorbed(workshop: &Workshop, units: Option<LightUnits>) -> (f64, Vec<String>) {
     let table = workshop.path("elements.csv");
-    let job = Job { light_units: units, pictures: Pictures::None, ..workshop.job(Division::Authored) };
-    let report = assembled(&Job { elements: Some(table.clone()), ..job });
+    let mut job = workshop.job(Division::Authored);
+    job.settings.light_units = units;
+    job.outputs.pictures = Pictures::None;
+    let report = assembled(&{
+        let mut job = job;
+        job.outputs.elements = Some(table.clone());
+        job
+    });
     let table = Table::read(&table);
     let power = (0..table.rows()).map(|row| table.number(row, "area") * table.number(row, "H_r")).sum();
     (power, report.notes)

@@ -2,9 +2,9 @@
 
 use super::viewers::endless;
 use base64::Engine;
-use equilux_assemble::camera::View;
-use equilux_assemble::canvas::Canvas;
-use equilux_assemble::exposure::Exposure;
+use equilux_assemble::picture::camera::View;
+use equilux_assemble::picture::canvas::Canvas;
+use equilux_assemble::picture::exposure::Exposure;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::prepare::{Division, Preparation, prepare};

@@ -2,7 +2,7 @@
 
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::Job;
+use equilux_assemble::run::job::Job;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::Division;
 use equilux_bake::treecode::Resolution;
@@ -15,9 +15,9 @@ fn shipped(workshop: &Workshop, scene: &str, size: ElementSize, tolerance: f64) 
     let mut job = workshop.job(Division::Authored);
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
     job.scene = format!("{root}/{scene}/{scene}.glb").into();
-    job.preparation.element_size = Some(size);
-    job.preparation.resolution = Resolution::for_tolerance(tolerance);
-    job.verify = true;
+    job.settings.preparation.element_size = Some(size);
+    job.settings.preparation.resolution = Resolution::for_tolerance(tolerance);
+    job.outputs.verify = true;
     job
 }
 
@@ -54,8 +54,17 @@ fn covers(report: &Report, what: &str) {
 
 /// Checks a scene with all rows exact and with some, and returns what the first proved over what was off.
 fn exact_rows_tell_the_error(job: &Job, what: &str) -> f64 {
-    let all = assembled(&Job { exact_rows: ExactRows::All, ..job.clone() });
-    let some = assembled(&Job { exact_rows: ExactRows::About(256), verify: false, ..job.clone() });
+    let all = assembled(&{
+        let mut job = job.clone();
+        job.outputs.exact_rows = ExactRows::All;
+        job
+    });
+    let some = assembled(&{
+        let mut job = job.clone();
+        job.outputs.exact_rows = ExactRows::About(256);
+        job.outputs.verify = false;
+        job
+    });
     let verify = all.verify.as_ref().expect("asked for");
     covers(&all, what);
     assert_eq!(all.error.proved_from, "exact rows", "{what}");
@@ -90,9 +99,9 @@ fn exact_rows_tell_the_error_of_the_shadow_scene() {
 fn exact_rows_tell_the_error_of_a_furnished_room() {
     let workshop = Workshop::with(&rooms::furnished());
     let mut job = workshop.job(Division::Bisect(3));
-    job.preparation.element_size = Some(ElementSize::Metres(0.25));
-    job.preparation.resolution = Resolution::for_tolerance(0.1);
-    job.verify = true;
+    job.settings.preparation.element_size = Some(ElementSize::Metres(0.25));
+    job.settings.preparation.resolution = Resolution::for_tolerance(0.1);
+    job.outputs.verify = true;
     let slack = exact_rows_tell_the_error(&job, "furnished room");
     assert!(slack <= 2.0, "all exact rows prove {slack} times the error");
 }
@@ -101,12 +110,12 @@ fn exact_rows_tell_the_error_of_a_furnished_room() {
 fn a_scene_of_fewer_rows_than_asked_for_has_them_all_exact_and_an_exact_one_none() {
     let workshop = Workshop::with(&rooms::furnished());
     let mut job = workshop.job(Division::Authored);
-    job.exact_rows = ExactRows::About(10_000);
+    job.outputs.exact_rows = ExactRows::About(10_000);
     assert!(assembled(&job).error.exact_rows.is_none(), "rows beside an exact matrix");
-    job.preparation.resolution = Resolution::for_tolerance(0.3);
+    job.settings.preparation.resolution = Resolution::for_tolerance(0.3);
     let report = assembled(&job);
     assert_eq!(report.error.exact_rows.expect("rows").rows, report.elements);
-    job.exact_rows = ExactRows::About(0);
+    job.outputs.exact_rows = ExactRows::About(0);
     let report = assembled(&job);
     assert!(report.error.exact_rows.is_none(), "rows where none were asked for");
     assert!(report.error.spread.is_some(), "a bound without rows");

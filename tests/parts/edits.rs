@@ -1,9 +1,8 @@
 //! An edited scene takes from the cache what the edit cannot have changed, and nothing else: after each of many edits the
 //! blocks are those that are computed from nothing.
 
-use equilux_assemble::coupling::Coupled;
+use equilux_assemble::equation::coupling::Coupled;
 use equilux_assemble::placed::Placed;
-use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::{EXACT, Resolution};
@@ -190,9 +189,15 @@ fn after_edits_compressed_light_is_within_what_is_proved_of_the_whole_matrix() {
     let mut things: Vec<Thing> = (0..4).map(|place| dice.thing(place, 2 * place)).collect();
     let job = workshop.job(Division::Authored);
     let resolution = Resolution::for_tolerance(0.01);
-    let preparation =
-        Preparation { resolution, element_size: Some(ElementSize::Metres(0.25)), ..job.preparation };
-    let job = Job { scene: workshop.path("scene.glb"), preparation, verify: true, ..job };
+    let preparation = Preparation {
+        resolution,
+        element_size: Some(ElementSize::Metres(0.25)),
+        ..job.settings.preparation.clone()
+    };
+    let mut job = job;
+    job.scene = workshop.path("scene.glb");
+    job.settings.preparation = preparation;
+    job.outputs.verify = true;
     for number in 0..12 {
         let what = edit(&mut things, &mut dice, number);
         scene(&things).write(&job.scene);

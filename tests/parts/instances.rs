@@ -1,10 +1,16 @@
 //! Copies of a part: turned, mirrored and scaled ones share its block to the bit, stretched ones do not; and copies that
 //! EXT_mesh_gpu_instancing tells of are instances like any other.
 
-use equilux_assemble::classic::{classic, largest_difference, whole_optics};
-use equilux_assemble::coupling::Coupler;
-use equilux_assemble::exchange::{Goal, Method, exchange, nodes};
+use equilux_assemble::equation::coupling::Coupler;
+use equilux_assemble::equation::optics::whole_optics;
+use equilux_assemble::equation::systems;
+use equilux_assemble::exchange::exchange;
+use equilux_assemble::exchange::listener::Unobserved;
+use equilux_assemble::exchange::settings::Goal;
+use equilux_assemble::exchange::settings::Method;
 use equilux_assemble::placed::Placed;
+use equilux_assemble::statistics::largest_difference;
+use equilux_assemble::verify::classic;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
@@ -99,9 +105,9 @@ proptest! {
             }
         }
         let each: Vec<Optics> = (0..4).map(|k| placed.optics_of(k)).collect();
-        let nodes = nodes(&placed, &coupled, &each);
+        let systems = systems(&placed, &coupled, &each);
         let goal = Goal { error: 0.0, rounds: usize::MAX };
-        let outcome = exchange(&nodes, Method::Auto, goal, None, &monitor);
+        let outcome = exchange(&systems, Method::Auto, goal, None, &monitor, &Unobserved);
         let whole = classic(&placed, &whole_optics(&placed), &monitor).expect("not stopped");
         // In the whole the own blocks are computed in the scene's coordinates: see above.
         let off = largest_difference(&outcome.radiosity, &whole.radiosity);

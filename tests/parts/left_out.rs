@@ -1,9 +1,9 @@
 //! What changes no radiosity is left out, told, and not missed.
 
-use equilux_assemble::exchange::{Goal, Method};
+use equilux_assemble::exchange::settings::Goal;
+use equilux_assemble::exchange::settings::Method;
 use equilux_assemble::report::Report;
 use equilux_assemble::report::summary::{BLACK_ROWS, DARK_SOLVES, UNSEEN};
-use equilux_assemble::run::Job;
 use equilux_bake::prepare::Division;
 use equilux_formats::Material;
 use equilux_tests::model::Node;
@@ -31,7 +31,8 @@ fn scene(reflectance: [f64; 3]) -> Vec<Node> {
 fn irradiance(nodes: &[Node]) -> (Report, Vec<Vec<String>>) {
     let workshop = Workshop::with(nodes);
     let table = workshop.path("table.csv");
-    let job = Job { elements: Some(table.clone()), ..workshop.job(Division::Authored) };
+    let mut job = workshop.job(Division::Authored);
+    job.outputs.elements = Some(table.clone());
     let report = assembled(&job);
     let text = std::fs::read_to_string(table).expect("the table");
     let row = |line: &str| line.split(',').skip(13).take(3).map(String::from).collect();
@@ -56,7 +57,12 @@ fn rows_of_black_receivers_wait_for_the_end_and_lack_nothing() {
 fn parts_that_hear_nothing_new_are_not_solved() {
     let workshop = Workshop::with(&scene([0.5; 3]));
     let goal = Goal { error: 1e-3, rounds: usize::MAX };
-    let report = assembled(&Job { method: Method::Jacobi, goal, ..workshop.job(Division::Authored) });
+    let report = assembled(&{
+        let mut job = workshop.job(Division::Authored);
+        job.settings.method = Method::Jacobi;
+        job.settings.goal = goal;
+        job
+    });
     // All light is in one half, then all that is new in the other, and so on to and fro.
     assert_eq!(count(&report, DARK_SOLVES), report.rounds.len(), "{:?}", report.blocks.coupling_left_out);
 }
@@ -64,7 +70,8 @@ fn parts_that_hear_nothing_new_are_not_solved() {
 #[test]
 fn parts_that_cannot_see_each_other_are_not_coupled() {
     let workshop = Workshop::with(&scene([0.5; 3]));
-    let job = Job { verify: true, ..workshop.job(Division::Authored) };
+    let mut job = workshop.job(Division::Authored);
+    job.outputs.verify = true;
     let report = assembled(&job);
     // The sealed box sees neither half, nor they it.
     assert_eq!(count(&report, UNSEEN), 4, "{:?}", report.blocks.coupling_left_out);

@@ -2,7 +2,6 @@
 
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::Job;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::Resolution;
 use equilux_tests::modular::{PARTS, places, write};
@@ -16,8 +15,16 @@ fn verified(tolerance: f64) -> Report {
     let workshop = Workshop::new();
     let scene = write(&workshop.path(""), ROOMS, |room| room);
     let job = workshop.job(Division::Authored);
-    let preparation = Preparation { resolution: Resolution::for_tolerance(tolerance), ..job.preparation };
-    let report = assembled(&Job { scene, preparation, verify: true, exact_rows: ExactRows::About(0), ..job });
+    let preparation =
+        Preparation { resolution: Resolution::for_tolerance(tolerance), ..job.settings.preparation.clone() };
+    let report = assembled(&{
+        let mut job = job;
+        job.scene = scene;
+        job.settings.preparation = preparation;
+        job.outputs.verify = true;
+        job.outputs.exact_rows = ExactRows::About(0);
+        job
+    });
     assert_eq!(
         (report.parts.len(), report.blocks.self_baked),
         (PARTS, PARTS),
@@ -43,7 +50,12 @@ fn neighbourhoods_that_are_alike_share_their_blocks() {
     let job = workshop.job(Division::Authored);
     let rooms = 8;
     let scene = write(&workshop.path(""), rooms, |_| 0);
-    let report = assembled(&Job { scene, verify: true, ..job });
+    let report = assembled(&{
+        let mut job = job;
+        job.scene = scene;
+        job.outputs.verify = true;
+        job
+    });
     let off = report.verify.as_ref().expect("asked for").max_rel_diff;
     assert!(off <= 1e-9, "{off} away from the whole");
     // One room's worth is computed, and for the seven others what they see through doors of rooms further off: at the ends

@@ -1,7 +1,6 @@
 //! What extras change about materials in one place: the light there and nothing else, and never a form factor.
 
 use equilux_assemble::report::Report;
-use equilux_assemble::run::Job;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::prepare::Division;
 use equilux_formats::{LocalSolver, Material};
@@ -43,8 +42,9 @@ fn scene(second: equilux_formats::Part, extras: Value) -> Vec<Node> {
 fn lit(workshop: &Workshop, nodes: &[Node], solver: LocalSolver) -> (Report, Vec<f64>) {
     Model::of(nodes).write(&workshop.path("scene.glb"));
     let table = workshop.path("table.csv");
-    let mut job = Job { elements: Some(table.clone()), ..workshop.job(Division::Authored) };
-    job.preparation.local_solver = Some(solver);
+    let mut job = workshop.job(Division::Authored);
+    job.outputs.elements = Some(table.clone());
+    job.settings.preparation.local_solver = Some(solver);
     let report = assembled(&job);
     let text = std::fs::read_to_string(table).expect("the table");
     let radiosity = |line: &str| {

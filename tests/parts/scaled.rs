@@ -2,8 +2,8 @@
 //! whole numbers, copies of several sizes.
 
 use super::instances::floats;
-use equilux_assemble::lightmap::{Units, Wanted};
-use equilux_assemble::run::Pictures;
+use equilux_assemble::lightmap::{LightmapOptions, Units};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::prepare::{Division, Preparation, Prepared, prepare};
@@ -46,10 +46,11 @@ fn a_room_is_the_same_in_any_units() {
         model.with("/nodes/0/scale", evenly(unit)).write(&workshop.path("scene.glb"));
         let by_default = prepared(&workshop, None, Division::Authored);
         let mut job = workshop.job(Division::Authored);
-        job.preparation.element_size = Some(ElementSize::Metres(0.25));
-        job.elements = Some(workshop.path("elements.csv"));
-        job.lightmaps = Some(Wanted { texel_size: Some(0.25), units: Units::Irradiance, directions: false });
-        job.pictures = Pictures::None;
+        job.settings.preparation.element_size = Some(ElementSize::Metres(0.25));
+        job.outputs.elements = Some(workshop.path("elements.csv"));
+        job.outputs.lightmaps =
+            Some(LightmapOptions { texel_size: Some(0.25), units: Units::Irradiance, directions: false });
+        job.outputs.pictures = Pictures::None;
         assembled(&job);
         let table = Table::read(&workshop.path("elements.csv"));
         let [centroids, normals] = [["x", "y", "z"], ["nx", "ny", "nz"]].map(|names| table.vectors(names));

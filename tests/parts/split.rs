@@ -1,8 +1,8 @@
 //! The light of a scene made of parts is the light of the classic whole-scene matrix, with parts as authored and with
 //! cells between planes anywhere.
 
-use equilux_assemble::exchange::Method;
-use equilux_assemble::run::Job;
+use equilux_assemble::exchange::settings::Method;
+use equilux_assemble::run::job::Job;
 use equilux_bake::bisect::Cut;
 use equilux_bake::prepare::Division;
 use equilux_tests::rooms::furnished;
@@ -18,9 +18,13 @@ const ROUNDING: f64 = 1e-10;
 const CLOSED: f64 = 1e-12;
 
 fn agrees_with_the_whole(job: &Job) {
-    let report = assembled(&Job { verify: true, ..job.clone() });
+    let report = assembled(&{
+        let mut job = job.clone();
+        job.outputs.verify = true;
+        job
+    });
     let difference = report.verify.as_ref().expect("a comparison").max_rel_diff;
-    let what = format!("{:?}, {:?}", job.preparation.division, job.method);
+    let what = format!("{:?}, {:?}", job.settings.preparation.division, job.settings.method);
     assert!(difference <= ROUNDING, "{what}: {difference:e} away from the whole, more than {ROUNDING:e}");
     let defect = report.row_sum_defect.max;
     assert!(
@@ -34,7 +38,11 @@ fn agrees_with_the_whole(job: &Job) {
 fn authored_parts_each_with_its_own_solver_are_the_whole() {
     let workshop = Workshop::with(&furnished());
     for method in [Method::Jacobi, Method::GaussSeidel] {
-        agrees_with_the_whole(&Job { method, ..workshop.job(Division::Authored) });
+        agrees_with_the_whole(&{
+            let mut job = workshop.job(Division::Authored);
+            job.settings.method = method;
+            job
+        });
     }
     let report = assembled(&workshop.job(Division::Authored));
     let solvers: Vec<&str> = report.parts.iter().map(|part| part.local_solver.as_str()).collect();

@@ -1,7 +1,12 @@
 //! Parts side by side with all their blocks, in memory: what an exchange needs, without files. Reflectance may be changed
 //! without computing a form factor.
 
-use equilux_assemble::exchange::{Goal, Method, Node, Outcome, exchange};
+use equilux_assemble::exchange::exchange;
+use equilux_assemble::exchange::listener::Unobserved;
+use equilux_assemble::exchange::outcome::Outcome;
+use equilux_assemble::exchange::settings::Goal;
+use equilux_assemble::exchange::settings::Method;
+use equilux_assemble::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::{LocalSystem, default_solver};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::local_equilibrium;
@@ -71,14 +76,14 @@ impl Assembled {
         self.solve_locally(None);
     }
 
-    /// The parts' shares of the equation.
-    pub fn nodes(&self) -> Vec<Node<'_>> {
+    /// The equation of each part.
+    pub fn systems(&self) -> Vec<InstanceSystem<'_>> {
         let node = |k: usize| {
             let (block, clusters, local) =
                 (&self.self_blocks[k], &self.geometries[k].clusters, &self.locals[k]);
             let optics = &self.optics[k];
             let factors = local.factors.as_ref();
-            Node {
+            InstanceSystem {
                 optics: optics.clone(),
                 self_block: block,
                 clusters,
@@ -93,7 +98,7 @@ impl Assembled {
 
     /// Exchange until `error` is proved, in at most so many rounds.
     pub fn exchange(&self, method: Method, error: f64, rounds: usize) -> Outcome {
-        exchange(&self.nodes(), method, Goal { error, rounds }, None, &Monitor::default())
+        exchange(&self.systems(), method, Goal { error, rounds }, None, &Monitor::default(), &Unobserved)
     }
 
     /// One vector a part from one of all elements.

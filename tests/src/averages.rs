@@ -3,9 +3,10 @@
 use crate::lit::{Lit, lit};
 use crate::table::Table;
 use crate::truth::{Errors, gathered};
-use equilux_assemble::gather::average::{Piece, centre};
+use equilux_assemble::gather::Gather;
 use equilux_assemble::gather::faces::{Faces, Plane};
-use equilux_assemble::gather::{Gather, Lights};
+use equilux_assemble::gather::lights::Lights;
+use equilux_assemble::gather::piece::{Piece, centre};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::prepare::{Division, Preparation, prepare};

@@ -1,9 +1,14 @@
 //! A scene's light in memory, in equilibrium, to be asked for more than the outputs tell.
 
 use crate::averages::mean;
-use equilux_assemble::classic::whole;
-use equilux_assemble::coupling::{Coupled, Coupler};
-use equilux_assemble::exchange::{Goal, Method, Outcome, exchange, nodes};
+use equilux_assemble::equation::coupling::{Coupled, Coupler};
+use equilux_assemble::equation::optics::joined;
+use equilux_assemble::equation::systems;
+use equilux_assemble::exchange::exchange;
+use equilux_assemble::exchange::listener::Unobserved;
+use equilux_assemble::exchange::outcome::Outcome;
+use equilux_assemble::exchange::settings::Goal;
+use equilux_assemble::exchange::settings::Method;
 use equilux_assemble::gather::Gather;
 use equilux_assemble::gather::outside::lights;
 use equilux_assemble::gather::sky::Radiances;
@@ -40,8 +45,15 @@ pub fn lit_scene(scene: &Scene, wanted: &Preparation) -> Lit {
     let (placed, coupled) = coupled_scene(scene, folder.path(), wanted);
     let each: Vec<Optics> = (0..placed.instances.len()).map(|k| placed.optics_of(k)).collect();
     let goal = Goal { error: 1e-6, rounds: usize::MAX };
-    let outcome = exchange(&nodes(&placed, &coupled, &each), Method::Auto, goal, None, &Monitor::default());
-    Lit { optics: whole(&each), placed, outcome }
+    let outcome = exchange(
+        &systems(&placed, &coupled, &each),
+        Method::Auto,
+        goal,
+        None,
+        &Monitor::default(),
+        &Unobserved,
+    );
+    Lit { optics: joined(&each), placed, outcome }
 }
 
 /// The lightmap of a scene in this light and that of the sky, W/(m² sr), from all around.

@@ -1,7 +1,7 @@
 //! A level as one world: its rows at a resolution, what they cost, and the light they give. For measurements.
 
 use crate::levels::furnished;
-use equilux_assemble::baseline::rays::row;
+use equilux_assemble::classic::rays::row;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::equilibrium::{added, apply, scaled};
 use equilux_bake::monitor::Monitor;

@@ -3,10 +3,10 @@
 use crate::model::{Model, Node};
 use crate::program::program;
 use assert_cmd::Command;
-use equilux_assemble::exchange::{Goal, Method};
-use equilux_assemble::proof::sample::ExactRows;
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::{Job, Pictures, run};
+use equilux_assemble::run::job::Job;
+use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
@@ -65,32 +65,18 @@ impl Workshop {
 
     /// What the library is asked for by default: scene.glb in elements of a metre.
     pub fn job(&self, division: Division) -> Job {
-        Job {
-            scene: self.path("scene.glb"),
-            cache: self.path("cache"),
-            out: self.path("out"),
-            preparation: Preparation {
-                resolution: EXACT,
-                element_size: Some(ElementSize::Metres(1.0)),
-                division,
-                local_solver: None,
-            },
-            method: Method::Auto,
-            goal: Goal { error: 0.0, rounds: usize::MAX },
-            exact_rows: ExactRows::About(256),
-            explain: false,
-            verify: false,
-            warm: false,
-            pictures: Pictures::Rounds,
-            lightmaps: None,
-            light_units: None,
-            sky: None,
-            points: None,
-            shot: None,
-            elements: None,
-            depfile: None,
-            cache_limit: None,
-        }
+        let mut job = Job::new(self.path("scene.glb"));
+        job.settings.cache = self.path("cache");
+        job.settings.preparation = Preparation {
+            resolution: EXACT,
+            element_size: Some(ElementSize::Metres(1.0)),
+            division,
+            local_solver: None,
+        };
+        job.settings.goal.error = 0.0;
+        job.outputs.folder = self.path("out");
+        job.outputs.pictures = Pictures::Rounds;
+        job
     }
 
     /// All files below `name` by their paths.

@@ -1,7 +1,10 @@
 //! The light is that of the equation, whoever solves it: by any exchange, any local solver, any division and from any
 //! start, answers differ by no more than what is proved of each.
 
-use equilux_assemble::exchange::{Goal, Method, exchange};
+use equilux_assemble::exchange::exchange;
+use equilux_assemble::exchange::listener::Unobserved;
+use equilux_assemble::exchange::settings::Goal;
+use equilux_assemble::exchange::settings::Method;
 use equilux_bake::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::monitor::Monitor;
@@ -72,13 +75,13 @@ proptest! {
         let exact = parts.exchange(Method::Gmres, 0.0, 4000);
         prop_assert!(exact.converged, "nothing to compare with");
         // The reference is itself only as good as rounding lets it be; a bound of a millionth of what is asked for is enough.
-        prop_assert!(exact.known.relative_bound < 1e-9, "reference within {:e}", exact.known.relative_bound);
+        prop_assert!(exact.convergence.relative_bound < 1e-9, "reference within {:e}", exact.convergence.relative_bound);
         for method in METHODS {
-            let nodes = parts.nodes();
+            let systems = parts.systems();
             let goal = Goal { error, rounds: ROUNDS };
-            let outcome = exchange(&nodes, method, goal, None, &Monitor::default());
+            let outcome = exchange(&systems, method, goal, None, &Monitor::default(), &Unobserved);
             let off = difference(&outcome.radiosity, &exact.radiosity);
-            let (bound, most) = (outcome.known.relative_bound + exact.known.relative_bound, brightest(&exact.radiosity));
+            let (bound, most) = (outcome.convergence.relative_bound + exact.convergence.relative_bound, brightest(&exact.radiosity));
             for c in 0..3 {
                 prop_assert!(
                     off[c] <= bound * (1.0 + bound) * most[c],
@@ -86,15 +89,15 @@ proptest! {
                 );
             }
             prop_assert!(
-                !outcome.converged || outcome.known.relative_bound <= error,
-                "{method:?} says it is within {error:e} and proves {:e}", outcome.known.relative_bound
+                !outcome.converged || outcome.convergence.relative_bound <= error,
+                "{method:?} says it is within {error:e} and proves {:e}", outcome.convergence.relative_bound
             );
             let all_rounds = outcome.rounds.iter().filter_map(|round| Some((round, round.radiosity.as_ref()?)));
             for (round, light) in all_rounds {
                 let off = difference(light, &exact.radiosity).into_iter().fold(0.0, f64::max);
-                let bound = round.known.error_bound + exact.known.error_bound;
+                let bound = round.convergence.error_bound + exact.convergence.error_bound;
                 prop_assert!(off <= bound, "{method:?}, round {}: off by {off:e}, proved {bound:e}", round.number);
-                let energy = round.known.energy;
+                let energy = round.convergence.energy;
                 for c in 0..3 {
                     let parts = [energy.absorbed[c], energy.escaped[c], energy.travelling[c]];
                     let (sum, size) = (parts.iter().sum::<f64>(), parts.iter().map(|p| p.abs()).sum::<f64>());
@@ -104,7 +107,7 @@ proptest! {
             }
             // What is proved already needs no round.
             let start: Vec<Vec<Rgb>> = parts.split(&outcome.radiosity);
-            let again = exchange(&nodes, method, Goal { error: 2.0 * outcome.known.relative_bound, rounds: ROUNDS }, Some(&start), &Monitor::default());
+            let again = exchange(&systems, method, Goal { error: 2.0 * outcome.convergence.relative_bound, rounds: ROUNDS }, Some(&start), &Monitor::default(), &Unobserved);
             prop_assert!(again.rounds.len() <= 1, "{method:?}: {} rounds from the solution", again.rounds.len());
         }
     }

@@ -34,7 +34,8 @@ fn another_image_or_colour_computes_no_form_factors() {
     let job = workshop.job(Division::Authored);
     assert!(assembled(&job).form_factors_computed > 0);
     let light = || {
-        let job = equilux_assemble::run::Job { elements: Some(workshop.path("elements.csv")), ..job.clone() };
+        let mut job = job.clone();
+        job.outputs.elements = Some(workshop.path("elements.csv"));
         assert_eq!(assembled(&job).form_factors_computed, 0);
         std::fs::read(workshop.path("elements.csv")).expect("a table")
     };

@@ -6,9 +6,10 @@ mod points;
 mod target;
 mod texels;
 
-use equilux_assemble::exchange::{Goal, Method};
+use equilux_assemble::outputs::requests::Pictures;
 use equilux_assemble::proof::sample::ExactRows;
-use equilux_assemble::run::{Job, Pictures, run};
+use equilux_assemble::run::job::Job;
+use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
@@ -64,32 +65,18 @@ fn agrees(name: &str) {
 fn assembled(scene: &Path) -> Table {
     let folder = tempfile::tempdir().unwrap();
     let elements: PathBuf = folder.path().join("elements.csv");
-    let job = Job {
-        scene: scene.to_path_buf(),
-        cache: folder.path().join("cache"),
-        out: folder.path().join("out"),
-        preparation: Preparation {
-            resolution: EXACT,
-            element_size: Some(ElementSize::Mesh),
-            division: Division::Authored,
-            local_solver: None,
-        },
-        method: Method::Auto,
-        goal: Goal { error: 1e-6, rounds: usize::MAX },
-        exact_rows: ExactRows::About(0),
-        explain: false,
-        verify: false,
-        warm: false,
-        pictures: Pictures::Rounds,
-        points: None,
-        shot: None,
-        elements: Some(elements.clone()),
-        depfile: None,
-        lightmaps: None,
-        light_units: None,
-        sky: None,
-        cache_limit: None,
+    let mut job = Job::new(scene.to_path_buf());
+    job.settings.cache = folder.path().join("cache");
+    job.outputs.folder = folder.path().join("out");
+    job.settings.preparation = Preparation {
+        resolution: EXACT,
+        element_size: Some(ElementSize::Mesh),
+        division: Division::Authored,
+        local_solver: None,
     };
+    job.outputs.exact_rows = ExactRows::About(0);
+    job.outputs.pictures = Pictures::None;
+    job.outputs.elements = Some(elements.clone());
     let report = run(&job, &Monitor::default()).unwrap();
     assert!(report.converged, "the exchange ended without the error asked for: {:?}", report.rounds.last());
     Table::read(&elements)

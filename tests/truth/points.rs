@@ -1,6 +1,7 @@
 //! Light gathered at the truth's points from elements of the default size, which have nothing to do with the truth's.
 
-use equilux_assemble::run::{Job, Pictures, run};
+use equilux_assemble::outputs::requests::Pictures;
+use equilux_assemble::run::run;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::Resolution;
@@ -20,13 +21,12 @@ fn light_at_points_is_that_of_path_tracing_whatever_the_elements() {
         let workshop = Workshop::new();
         let resolution = Resolution::for_tolerance(0.01);
         let division = Division::Authored;
-        let job = Job {
-            scene: folder.join(name).with_extension("glb"),
-            preparation: Preparation { element_size: None, division, resolution, local_solver: None },
-            pictures: Pictures::None,
-            points: Some(folder.join("truth.csv")),
-            ..workshop.job(Division::Authored)
-        };
+        let mut job = workshop.job(Division::Authored);
+        job.scene = folder.join(name).with_extension("glb");
+        job.settings.preparation =
+            Preparation { element_size: None, division, resolution, local_solver: None };
+        job.outputs.pictures = Pictures::None;
+        job.outputs.points = Some(folder.join("truth.csv"));
         run(&job, &Monitor::default()).expect("a run");
         let off = off(&folder, &workshop.path("out").join(name).join("points.csv"));
         assert!(off <= TOLERANCE, "{name}: {off} off, more than {TOLERANCE}");

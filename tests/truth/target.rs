@@ -1,8 +1,9 @@
 //! An error that is asked for, measured against path tracing.
 
 use super::points::off;
-use equilux_assemble::advice::advise;
-use equilux_assemble::run::{Job, Pictures, run};
+use equilux_assemble::outputs::requests::Pictures;
+use equilux_assemble::run::advice::advise;
+use equilux_assemble::run::run;
 use equilux_bake::monitor::Monitor;
 use equilux_tests::workshop::Workshop;
 use std::path::Path;
@@ -20,12 +21,10 @@ fn an_error_that_is_asked_for_is_met() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
         let workshop = Workshop::new();
         for &target in targets {
-            let job = Job {
-                scene: folder.join(name).with_extension("glb"),
-                pictures: Pictures::None,
-                points: Some(folder.join("truth.csv")),
-                ..workshop.job(equilux_bake::prepare::Division::Authored)
-            };
+            let mut job = workshop.job(equilux_bake::prepare::Division::Authored);
+            job.scene = folder.join(name).with_extension("glb");
+            job.outputs.pictures = Pictures::None;
+            job.outputs.points = Some(folder.join("truth.csv"));
             let (job, advice) = advise(&job, target, &Monitor::default()).expect("advice");
             run(&job, &Monitor::default()).expect("a run");
             let measured = off(&folder, &workshop.path("out").join(name).join("points.csv"));

@@ -1,19 +1,21 @@
 //! Assembling for a person: with progress, once or again and again, with a page or without.
 
-use super::said;
-use crate::advice::advise;
+use super::printed::said;
+use crate::equation::observer::Observer;
+use crate::exchange::listener::Unobserved;
 use crate::live::Live;
-use crate::observer::{Observer, Unobserved};
 use crate::report::Report;
-use crate::run::{Job, run_observed};
-use crate::watch::watch;
+use crate::run::advice::advise;
+use crate::run::job::Job;
+use crate::run::run_observed;
+use crate::run::watch::watch;
 use equilux_bake::cli::program::{Unprinted, print, tell};
 use equilux_bake::cli::progress;
 use equilux_bake::monitor::Monitor;
 use std::sync::Arc;
 
-/// What is wanted.
-pub struct Wish {
+/// A command to assemble, parsed.
+pub struct Invocation {
     /// What to assemble, and how.
     pub job: Job,
     /// The error that element size and tolerance are to be chosen for.
@@ -25,11 +27,11 @@ pub struct Wish {
 }
 
 /// Assemble, with a page if there is to be one; that page is then served on. Returns what is left to say.
-pub fn once(wish: &Wish, text: impl Fn(&Report) -> String) -> anyhow::Result<String> {
+pub fn once(invocation: &Invocation, text: impl Fn(&Report) -> String) -> anyhow::Result<String> {
     let monitor = progress::monitor_for_program();
-    let live = wish.live.map(|port| serve(port, false, &monitor)).transpose()?;
-    let report = assemble(wish, &monitor, live.as_ref())?;
-    let text = said(wish.json, &report, text);
+    let live = invocation.live.map(|port| serve(port, false, &monitor)).transpose()?;
+    let report = assemble(invocation, &monitor, live.as_ref())?;
+    let text = said(invocation.json, &report, text);
     let Some(live) = live.filter(|_| !monitor.stopped()) else { return Ok(text) };
     print(&text)?;
     tell(format_args!(
@@ -41,22 +43,25 @@ pub fn once(wish: &Wish, text: impl Fn(&Report) -> String) -> anyhow::Result<Str
 }
 
 /// Assemble again and again. Errors in the scene are printed, and it goes on.
-pub fn watched(wish: &Wish) -> anyhow::Result<String> {
+pub fn watched(invocation: &Invocation) -> anyhow::Result<String> {
     let monitor = progress::monitor_for_program();
-    let live = wish.live.map(|port| serve(port, true, &monitor)).transpose()?;
+    let live = invocation.live.map(|port| serve(port, true, &monitor)).transpose()?;
     let (mut last_notes, mut printed) = (Vec::new(), Ok::<(), Unprinted>(()));
-    watch(&wish.job.scene, &wish.job.beside().collect::<Vec<_>>(), &monitor, |why| {
-        match assemble(wish, &monitor, live.as_ref()) {
+    watch(
+        &invocation.job.scene,
+        &invocation.job.beside().collect::<Vec<_>>(),
+        &monitor,
+        |why| match assemble(invocation, &monitor, live.as_ref()) {
             Ok(report) => {
-                printed = print(&said(wish.json, &report, |report| short(why, report, &last_notes)));
+                printed = print(&said(invocation.json, &report, |report| short(why, report, &last_notes)));
                 if printed.is_err() {
                     monitor.stop();
                 }
                 last_notes = report.notes;
             }
             Err(error) => tell(format_args!("error: {error:#}")),
-        }
-    })?;
+        },
+    )?;
     printed?;
     Ok(String::new())
 }
@@ -67,9 +72,9 @@ fn serve(port: u16, watched: bool, monitor: &Arc<Monitor>) -> anyhow::Result<Liv
     Ok(live)
 }
 
-fn assemble(wish: &Wish, monitor: &Arc<Monitor>, live: Option<&Live>) -> anyhow::Result<Report> {
+fn assemble(invocation: &Invocation, monitor: &Arc<Monitor>, live: Option<&Live>) -> anyhow::Result<Report> {
     let progress = progress::show(monitor);
-    let report = advised(wish, monitor, live.map_or(&Unobserved, Live::begin));
+    let report = advised(invocation, monitor, live.map_or(&Unobserved, Live::begin));
     progress.finish();
     if let Some(live) = live {
         live.end(report.as_ref().map_err(ToString::to_string));
@@ -77,9 +82,15 @@ fn assemble(wish: &Wish, monitor: &Arc<Monitor>, live: Option<&Live>) -> anyhow:
     Ok(report?)
 }
 
-fn advised(wish: &Wish, monitor: &Monitor, observer: &dyn Observer) -> equilux_formats::Result<Report> {
-    let Some(target) = wish.target_error else { return run_observed(&wish.job, monitor, observer) };
-    let (job, advice) = advise(&wish.job, target, monitor)?;
+fn advised(
+    invocation: &Invocation,
+    monitor: &Monitor,
+    observer: &dyn Observer,
+) -> equilux_formats::Result<Report> {
+    let Some(target) = invocation.target_error else {
+        return run_observed(&invocation.job, monitor, observer);
+    };
+    let (job, advice) = advise(&invocation.job, target, monitor)?;
     Ok(Report { advice: Some(advice), ..run_observed(&job, monitor, observer)? })
 }
 

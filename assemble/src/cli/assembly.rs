@@ -1,12 +1,15 @@
 //! A scene on the command line, and how to assemble it.
 
 use super::values;
-use crate::exchange::{Goal, Method};
+use crate::exchange::settings::Goal;
+use crate::exchange::settings::Method;
 use crate::gather::sky::Sky;
-use crate::lightmap::{Units, Wanted};
+use crate::lightmap::{LightmapOptions, Units};
+use crate::outputs::requests::{OutputRequests, Pictures};
 use crate::proof::sample::ExactRows;
-use crate::run::{Job, Pictures};
-use clap::{Args, ValueEnum};
+use crate::run::job::Job;
+use crate::solve::settings::SolveSettings;
+use clap::Args;
 use equilux_bake::cli::options::SceneOptions;
 use equilux_formats::LightUnits;
 use std::path::PathBuf;
@@ -25,7 +28,7 @@ pub struct Assembly {
     out: PathBuf,
     /// How parts exchange light
     #[arg(long, value_name = "METHOD", default_value = "auto")]
-    exchange: Exchange,
+    exchange: Method,
     /// At most this many rounds
     #[arg(long, value_name = "N")]
     rounds: Option<usize>,
@@ -42,8 +45,8 @@ pub struct Assembly {
     #[arg(long)]
     warm: bool,
     /// Which pictures to draw; the result as a model is always written
-    #[arg(long, value_name = "WHICH", default_value = "rounds")]
-    pictures: Drawn,
+    #[arg(long, value_name = "WHICH", default_value = "last")]
+    pictures: Pictures,
     /// What shines from all around: a radiance in W/(m² sr), one number or R,G,B, or an equirectangular picture,
     /// .hdr or .exr, whose middle is -Z, right of that +X, and top +Y
     #[arg(long, value_name = "RADIANCE|FILE", value_parser = values::sky)]
@@ -51,7 +54,7 @@ pub struct Assembly {
     /// What the intensities of the file's lights mean [default: what Blender's exporter writes if that wrote the file, else
     /// radiometric]
     #[arg(long, value_name = "UNITS")]
-    light_units: Option<Intensities>,
+    light_units: Option<LightUnits>,
     /// Write lightmaps: lightmap.exr and .png, what lies where in them, and models that carry them
     #[arg(long)]
     lightmaps: bool,
@@ -60,7 +63,7 @@ pub struct Assembly {
     texel_size: Option<f64>,
     /// What the numbers in lightmap.exr are
     #[arg(long, value_name = "UNITS", requires = "lightmaps", default_value = "irradiance")]
-    lightmap_units: LightmapUnits,
+    lightmap_units: Units,
     /// Also write where the light of each texel comes from: lightmap_direction.exr
     #[arg(long, requires = "lightmaps")]
     lightmap_directions: bool,
@@ -79,102 +82,40 @@ pub struct Assembly {
     depfile: Option<PathBuf>,
 }
 
-/// The exchange's name on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Exchange {
-    /// GMRES, with a coarse space where light goes to and fro for long
-    Auto,
-    /// All parts at once, as the paper does
-    Jacobi,
-    /// One part after the other, with the newest light
-    GaussSeidel,
-    /// GMRES, always with a coarse space of the parts' answers to light from outside
-    Gmres,
-}
-
-/// The pictures' name on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Drawn {
-    /// Of rounds, of the end, and of the elements
-    Rounds,
-    /// Of the end
-    Last,
-    /// None
-    None,
-}
-
-/// The units of lights on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Intensities {
-    /// W/sr and W/m², number for number what the file calls candela and lux
-    Radiometric,
-    /// Candela and lux of light of 683 lm/W: what Blender writes by default (Standard)
-    Photometric,
-    /// Watts of whole lamps: what Blender writes with `Raw`, and did before version 3.4
-    BlenderRaw,
-}
-
-/// The units' name on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum LightmapUnits {
-    /// Irradiance, W/m², as three.js takes it
-    Irradiance,
-    /// Irradiance over pi, what Bevy multiplies by its lightmap_exposure (683 for watts) and takes for cd/m²
-    Bevy,
-}
-
-impl From<Intensities> for LightUnits {
-    fn from(units: Intensities) -> Self {
-        match units {
-            Intensities::Radiometric => Self::Radiometric,
-            Intensities::Photometric => Self::Photometric,
-            Intensities::BlenderRaw => Self::BlenderRaw,
-        }
-    }
-}
-
 impl Assembly {
-    /// The job, with nothing explained and no picture asked for.
+    /// The job, with nothing explained and no picture from a camera.
     pub fn job(&self) -> Job {
-        let default_error = if self.verify { 0.0 } else { 1e-6 };
+        let default = if self.verify { Goal { error: 0.0, ..Goal::default() } } else { Goal::default() };
         Job {
             scene: self.scene.clone().expect("a task has a scene"),
-            cache: self.options.cache.clone(),
-            out: self.out.clone(),
-            preparation: self.options.preparation(),
-            method: match self.exchange {
-                Exchange::Auto => Method::Auto,
-                Exchange::Jacobi => Method::Jacobi,
-                Exchange::GaussSeidel => Method::GaussSeidel,
-                Exchange::Gmres => Method::Gmres,
-            },
-            goal: Goal {
-                error: self.error.unwrap_or(default_error),
-                rounds: self.rounds.unwrap_or(usize::MAX),
-            },
-            exact_rows: self.exact_rows,
-            explain: false,
-            verify: self.verify,
-            warm: self.warm,
-            pictures: match self.pictures {
-                Drawn::Rounds => Pictures::Rounds,
-                Drawn::Last => Pictures::Last,
-                Drawn::None => Pictures::None,
-            },
-            light_units: self.light_units.map(Into::into),
-            sky: self.sky.clone(),
-            lightmaps: self.lightmaps.then_some(Wanted {
-                texel_size: self.texel_size,
-                directions: self.lightmap_directions,
-                units: match self.lightmap_units {
-                    LightmapUnits::Irradiance => Units::Irradiance,
-                    LightmapUnits::Bevy => Units::Bevy,
+            settings: SolveSettings {
+                cache: self.options.cache.clone(),
+                preparation: self.options.preparation(),
+                light_units: self.light_units,
+                sky: self.sky.clone(),
+                method: self.exchange,
+                goal: Goal {
+                    error: self.error.unwrap_or(default.error),
+                    rounds: self.rounds.unwrap_or(default.rounds),
                 },
-            }),
-            shot: None,
-            points: self.points.clone(),
-            elements: self.elements.clone(),
-            depfile: self.depfile.clone(),
+                warm: self.warm,
+            },
+            outputs: OutputRequests {
+                folder: self.out.clone(),
+                pictures: self.pictures,
+                shot: None,
+                lightmaps: self.lightmaps.then_some(LightmapOptions {
+                    texel_size: self.texel_size,
+                    directions: self.lightmap_directions,
+                    units: self.lightmap_units,
+                }),
+                points: self.points.clone(),
+                elements: self.elements.clone(),
+                depfile: self.depfile.clone(),
+                exact_rows: self.exact_rows,
+                verify: self.verify,
+                explain: false,
+            },
             cache_limit: self.options.cache_limit,
         }
     }

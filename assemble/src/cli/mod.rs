@@ -2,22 +2,24 @@
 
 mod assembling;
 pub(crate) mod assembly;
+mod classic;
+mod printed;
 mod render;
+mod sweep;
 pub(crate) mod values;
 
-use crate::baseline;
-use crate::plan::{Plan, plan};
+use crate::outputs::requests::OutputRequests;
 use crate::report::Report;
-use crate::run::Job;
-use crate::sweep;
-use assembling::{Wish, once, watched};
+use crate::run::job::Job;
+use crate::run::plan::{Plan, plan};
+use assembling::{Invocation, once, watched};
 use assembly::Assembly;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 use equilux_bake::cli::{program, progress};
 use equilux_bake::monitor::Monitor;
+use printed::said;
 use render::Render;
-use serde::Serialize;
 use std::process::ExitCode;
 
 /// Assemble a scene from baked parts, let them exchange light until equilibrium, and write pictures and a report.
@@ -53,9 +55,9 @@ enum Task {
     /// Draw the result from a camera: render.png, and how far it is from a reference: error.png
     Render(Render),
     /// Try settings for a while and report error against run time
-    Sweep(sweep::cli::Arguments),
+    Sweep(sweep::Arguments),
     /// Solve the scene with one matrix of all pairs of elements, or by progressive refinement: what to compare with
-    Classic(baseline::cli::Arguments),
+    Classic(classic::Arguments),
     /// Print what makes a shell complete this program's options
     Completions {
         /// The shell
@@ -97,8 +99,9 @@ fn run(arguments: Arguments) -> anyhow::Result<String> {
         Some(Task::Render(render)) => {
             let Assembly { options, .. } = &render.assembly;
             options.set_threads()?;
-            let wish = Wish { job: render.job(), target_error: None, live: None, json: options.json };
-            once(&wish, Report::outputs_text)
+            let invocation =
+                Invocation { job: render.job(), target_error: None, live: None, json: options.json };
+            once(&invocation, Report::outputs_text)
         }
         Some(Task::Sweep(arguments)) => {
             let summary = shown(|monitor| Ok(arguments.run(monitor)?))?;
@@ -106,7 +109,7 @@ fn run(arguments: Arguments) -> anyhow::Result<String> {
         }
         Some(Task::Classic(arguments)) => {
             let report = shown(|monitor| arguments.run(monitor))?;
-            Ok(said(arguments.json, &report, baseline::Report::text))
+            Ok(said(arguments.json, &report, crate::classic::ClassicReport::text))
         }
         Some(Task::Completions { shell }) => Ok(program::completions::<Arguments>(shell, "assemble")),
     }
@@ -115,9 +118,11 @@ fn run(arguments: Arguments) -> anyhow::Result<String> {
 fn assemble(arguments: &Arguments) -> anyhow::Result<String> {
     let Arguments { assembly, explain, target_error, live, .. } = arguments;
     assembly.options.set_threads()?;
-    let job = Job { explain: *explain, ..assembly.job() };
-    let wish = Wish { job, target_error: *target_error, live: *live, json: assembly.options.json };
-    if arguments.watch { watched(&wish) } else { once(&wish, Report::text) }
+    let job = assembly.job();
+    let job = Job { outputs: OutputRequests { explain: *explain, ..job.outputs }, ..job };
+    let invocation =
+        Invocation { job, target_error: *target_error, live: *live, json: assembly.options.json };
+    if arguments.watch { watched(&invocation) } else { once(&invocation, Report::text) }
 }
 
 /// Do something with progress shown, until Ctrl-C.
@@ -127,9 +132,4 @@ fn shown<T>(work: impl FnOnce(&Monitor) -> anyhow::Result<T>) -> anyhow::Result<
     let done = work(&monitor);
     progress.finish();
     done
-}
-
-/// What goes to stdout: for machines if they asked, else for people.
-fn said<T: Serialize>(json: bool, what: &T, text: impl Fn(&T) -> String) -> String {
-    if json { serde_json::to_string(what).expect("a report is plain data") + "\n" } else { text(what) }
 }

@@ -2,9 +2,10 @@
 
 use super::assembly::Assembly;
 use super::values;
-use crate::render::{Eye, Shading, Shot};
-use crate::run::{Job, Pictures};
-use clap::{Args, ValueEnum};
+use crate::outputs::requests::{OutputRequests, Pictures};
+use crate::picture::shot::{Eye, Shading, Shot};
+use crate::run::job::Job;
+use clap::Args;
 use glam::DVec3;
 use std::path::PathBuf;
 
@@ -30,7 +31,7 @@ pub struct Render {
     size: Option<[u32; 2]>,
     /// How light is drawn
     #[arg(long, value_name = "HOW", default_value = "smooth")]
-    shading: Shaded,
+    shading: Shading,
     /// So many stops brighter than what suits the scene, or darker
     #[arg(long, value_name = "STOPS", default_value = "0", value_parser = values::stops, allow_hyphen_values = true)]
     exposure: f64,
@@ -38,15 +39,6 @@ pub struct Render {
     /// --points wrote
     #[arg(long, value_name = "FILE.csv")]
     against: Option<PathBuf>,
-}
-
-/// The shading's name on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum Shaded {
-    /// Each element in one colour
-    Flat,
-    /// Interpolated between elements that see each other
-    Smooth,
 }
 
 impl Render {
@@ -57,12 +49,10 @@ impl Render {
             (None, Some(from), Some(to)) => Eye::Points { from, to, field_of_view: self.fov.to_radians() },
             _ => Eye::Scene,
         };
-        let shading = match self.shading {
-            Shaded::Flat => Shading::Flat,
-            Shaded::Smooth => Shading::Smooth,
-        };
+        let shading = self.shading;
         let (size, stops, against) = (self.size, self.exposure, self.against.clone());
         let shot = Some(Shot { eye, size, shading, stops, against });
-        Job { shot, pictures: Pictures::None, ..self.assembly.job() }
+        let job = self.assembly.job();
+        Job { outputs: OutputRequests { shot, pictures: Pictures::None, ..job.outputs }, ..job }
     }
 }

@@ -5,10 +5,10 @@
 //! M-matrices). With w = 1, (A w)_i is the share of light that element i takes out of the scene. Where elements differ
 //! much in that, a w that solves A w = 1 roughly proves far more.
 
-use super::StepTimes;
-use super::coarse::Coarse;
-use super::groups::Group;
-use super::sweep::Sweep;
+use crate::exchange::block_correction::BlockCorrection;
+use crate::exchange::coarse::Coarse;
+use crate::exchange::groups::Group;
+use crate::exchange::step_times::StepTimes;
 use equilux_bake::equilibrium::krylov::Space;
 use equilux_bake::equilibrium::{added, largest, scaled};
 use equilux_formats::Rgb;
@@ -92,7 +92,7 @@ impl Margin {
         loop {
             sum.iter_mut().zip(&bounce).for_each(|(sum, &s)| *sum = added(*sum, s));
             let reflected = group.irradiance(&bounce);
-            let rows = group.nodes().flat_map(|node| &node.optics.reflectance).zip(reflected);
+            let rows = group.systems().flat_map(|system| &system.optics.reflectance).zip(reflected);
             bounce = rows.map(|(&rho, h)| scaled(rho, h)).collect();
             let factor = self.factor_of(&bounce);
             let found = sum.iter().zip(&self.vector).map(|(&sum, &w)| added(sum, times(factor, w)));
@@ -131,7 +131,7 @@ fn sizes(residual: &[Rgb], radiosity: &[Rgb]) -> Vec<Rgb> {
 
 /// w with |A w − 1| ≤ [`ROUGH`] everywhere; none if that takes too long.
 fn solved(group: &Group, coarse: Option<&Coarse>, turns: usize) -> Option<Vec<Rgb>> {
-    let mut sweep = Sweep::new(group, turns, Some(ROUGH / 10.0));
+    let mut sweep = BlockCorrection::new(group, turns, Some(ROUGH / 10.0));
     let mut times = StepTimes::none(group.scene_instances());
     let mut vector = vec![[0.0; 3]; group.elements()];
     let mut missing = vec![[1.0; 3]; group.elements()];

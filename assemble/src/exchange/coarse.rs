@@ -4,8 +4,8 @@
 //! With the answers as columns of C, y solves (Cᵀ D A C) y = Cᵀ D v, D the areas, and C y starts the parts' own corrections.
 //! Nicolaides 1987 for the idea; Tang, Nabben, Vuik & Erlangga 2009 for the ways to combine the two.
 
-use super::Node;
-use super::groups::{Group, ranges};
+use crate::exchange::groups::{Group, ranges};
+use crate::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::direct::{factorise_dense, solve};
 use equilux_bake::equilibrium::{added, scaled};
 use equilux_formats::{Factors, Rgb};
@@ -45,7 +45,7 @@ impl<'a> Coarse<'a> {
     /// The coarse equation; none if the parts give no answers or are too many.
     pub fn of(group: &'a Group<'a>) -> Option<Self> {
         let each = (MOST / group.members.len().max(1)).min(ANSWERS);
-        let unknowns = ranges(group.nodes().map(|node| node.answers.radiosity.len().min(each)));
+        let unknowns = ranges(group.systems().map(|system| system.answers.radiosity.len().min(each)));
         let size = unknowns.last().map_or(0, |last| last.end);
         if group.members.len() < 2 || size == 0 {
             return None;
@@ -53,7 +53,7 @@ impl<'a> Coarse<'a> {
         let coupling = coupling(group, &unknowns);
         let row = |row: usize| -> Vec<Rgb> {
             let member = unknowns.partition_point(|range| range.end <= row);
-            let (answers, own) = (&group.node(member).answers, &unknowns[member]);
+            let (answers, own) = (&group.system(member).answers, &unknowns[member]);
             let (count, first) = (answers.radiosity.len(), row - own.start);
             let mut entries: Vec<Rgb> =
                 coupling[member][first * size..][..size].iter().map(|entry| entry.map(|f| -f)).collect();
@@ -90,20 +90,20 @@ impl<'a> Coarse<'a> {
 
     /// Σ_i A_i a_i v_i for each answer a of a member.
     fn missed_by(&self, member: usize, missing: &[Rgb]) -> Vec<Rgb> {
-        let node = self.group.node(member);
+        let system = self.group.system(member);
         let missing = &missing[self.group.elements_of(member)];
         let product = |answer: &Vec<Rgb>| {
             let terms = answer.iter().zip(missing).enumerate();
             terms.fold([0.0; 3], |sum, (i, (&a, &v))| {
-                added(sum, scaled(a, v).map(|av| av * node.clusters.area_of(i)))
+                added(sum, scaled(a, v).map(|av| av * system.clusters.area_of(i)))
             })
         };
-        node.answers.radiosity[..self.unknowns[member].len()].iter().map(product).collect()
+        system.answers.radiosity[..self.unknowns[member].len()].iter().map(product).collect()
     }
 
     fn sum_of_answers(&self, member: usize, shares: &[Rgb]) -> Vec<Rgb> {
         let mut sum = vec![[0.0; 3]; self.group.elements_of(member).len()];
-        let answers = &self.group.node(member).answers.radiosity;
+        let answers = &self.group.system(member).answers.radiosity;
         for (&share, answer) in shares[self.unknowns[member].clone()].iter().zip(answers) {
             sum.iter_mut().zip(answer).for_each(|(sum, &a)| *sum = added(*sum, scaled(share, a)));
         }
@@ -114,10 +114,10 @@ impl<'a> Coarse<'a> {
 /// Σ_i A_i a_i ρ_i Σ_j F_ij b_j for the answers a of one member and b of all others, by rows; one matrix a member.
 fn coupling(group: &Group, unknowns: &[Range<usize>]) -> Vec<Vec<Rgb>> {
     let sent = |m: usize| -> Vec<[Rgb; ANSWERS]> {
-        let node = group.node(m);
-        let mut sent = vec![[[0.0; 3]; ANSWERS]; node.clusters.nodes()];
-        for (k, answer) in node.answers.radiosity[..unknowns[m].len()].iter().enumerate() {
-            sent.iter_mut().zip(node.clusters.means(answer)).for_each(|(sent, mean)| sent[k] = mean);
+        let system = group.system(m);
+        let mut sent = vec![[[0.0; 3]; ANSWERS]; system.clusters.nodes()];
+        for (k, answer) in system.answers.radiosity[..unknowns[m].len()].iter().enumerate() {
+            sent.iter_mut().zip(system.clusters.means(answer)).for_each(|(sent, mean)| sent[k] = mean);
         }
         sent
     };
@@ -132,17 +132,17 @@ fn received_by(
     unknowns: &[Range<usize>],
     sent: &[Vec<[Rgb; ANSWERS]>],
 ) -> Vec<Rgb> {
-    let node = group.node(member);
-    let answers = &node.answers.radiosity[..unknowns[member].len()];
+    let system = group.system(member);
+    let answers = &system.answers.radiosity[..unknowns[member].len()];
     let size = unknowns.last().map_or(0, |last| last.end);
     let mut matrix = vec![[0.0; 3]; answers.len() * size];
-    for rows in 0..node.coupling.groups() {
+    for rows in 0..system.coupling.groups() {
         let weights: Vec<[f64; 3 * ANSWERS]> =
-            node.coupling.receivers_of(rows).map(|i| weights(node, answers, i)).collect();
+            system.coupling.receivers_of(rows).map(|i| weights(system, answers, i)).collect();
         if weights.iter().flatten().all(|&weight| weight == 0.0) {
             continue;
         }
-        let scattered = node.coupling.scatter_group(rows, &weights);
+        let scattered = system.coupling.scatter_group(rows, &weights);
         // Senders come in order, so those of a member together.
         let (mut from, mut rest) = (0, scattered.as_slice());
         while let Some((next, _)) = rest.first() {
@@ -179,9 +179,9 @@ fn products(
 }
 
 /// A_i a_i ρ_i of one element for each answer a.
-fn weights(node: &Node, answers: &[Vec<Rgb>], i: usize) -> [f64; 3 * ANSWERS] {
+fn weights(system: &InstanceSystem, answers: &[Vec<Rgb>], i: usize) -> [f64; 3 * ANSWERS] {
     let mut weights = [0.0; 3 * ANSWERS];
-    let reflected = node.optics.reflectance[i].map(|rho| rho * node.clusters.area_of(i));
+    let reflected = system.optics.reflectance[i].map(|rho| rho * system.clusters.area_of(i));
     let places = weights.as_chunks_mut::<3>().0.iter_mut();
     places.zip(answers).for_each(|(place, answer)| *place = scaled(reflected, answer[i]));
     weights

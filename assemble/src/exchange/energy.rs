@@ -3,7 +3,7 @@
 //! Collocation is exact by rows, not in energy: of what element j sends, Σ_i A_i F_ij / A_j arrives somewhere, which in a
 //! closed scene should be 1 and is so only on average. Whatever does not arrive counts as escaped.
 
-use super::groups::Group;
+use crate::exchange::groups::Group;
 use equilux_bake::equilibrium::added;
 use equilux_formats::Rgb;
 use rayon::prelude::*;
@@ -29,10 +29,10 @@ impl Columns {
     /// Column sums Σ_i A_i F_ij / A_j, one an element of the group.
     pub fn of(group: &Group) -> Self {
         let mut arriving = vec![0.0; group.scene_senders()];
-        for (m, node) in group.nodes().enumerate() {
-            for (block, first) in [(node.self_block, group.senders_of(m).start), (node.coupling, 0)] {
+        for (m, system) in group.systems().enumerate() {
+            for (block, first) in [(system.self_block, group.senders_of(m).start), (system.coupling, 0)] {
                 let scattered = |rows: usize| {
-                    let areas: Vec<[f64; 1]> = block.receivers_of(rows).map(|i| [node.areas[i]]).collect();
+                    let areas: Vec<[f64; 1]> = block.receivers_of(rows).map(|i| [system.areas[i]]).collect();
                     block.scatter_group(rows, &areas)
                 };
                 let sums: Vec<_> = (0..block.groups()).into_par_iter().map(scattered).collect();
@@ -52,7 +52,7 @@ impl Columns {
 
     /// The account of a state with this radiosity that misses this.
     pub fn account(&self, group: &Group, radiosity: &[Rgb], missing: &[Rgb]) -> Energy {
-        let areas = group.nodes().flat_map(|node| node.areas.iter().zip(&node.optics.emission));
+        let areas = group.systems().flat_map(|system| system.areas.iter().zip(&system.optics.emission));
         let mut energy = Energy::default();
         for (((&area, emission), share), (b, r)) in areas.zip(&self.0).zip(radiosity.iter().zip(missing)) {
             for c in 0..3 {
@@ -71,17 +71,17 @@ impl Columns {
 
 /// The column sums of a member's elements from the power that arrives of each of its senders.
 fn shares(group: &Group, member: usize, arriving: &[f64]) -> Vec<f64> {
-    let node = group.node(member);
-    let elements = node.areas.len();
+    let system = group.system(member);
+    let elements = system.areas.len();
     // A part's own tree measures area in the part's units.
-    let scale = if elements == 0 { 1.0 } else { node.areas[0] / node.clusters.area_of(0) };
+    let scale = if elements == 0 { 1.0 } else { system.areas[0] / system.clusters.area_of(0) };
     let mut shares: Vec<f64> = arriving
         .iter()
         .enumerate()
-        .map(|(sender, power)| power / (node.clusters.area_of(sender) * scale))
+        .map(|(sender, power)| power / (system.clusters.area_of(sender) * scale))
         .collect();
     // What a cluster sends, each of its elements sends by its area; outer clusters come first.
-    for (cluster, pair) in node.clusters.children().iter().enumerate() {
+    for (cluster, pair) in system.clusters.children().iter().enumerate() {
         pair.iter().for_each(|&child| shares[child as usize] += shares[elements + cluster]);
     }
     shares.truncate(elements);

@@ -1,8 +1,9 @@
 //! Where light comes from. In go pieces of surface; out comes for each the mean direction of its light, weighted by the
 //! luminance of the irradiance that comes from there.
 
-use super::average::{Piece, centre};
-use super::{Gather, receiver};
+use crate::gather::Gather;
+use crate::gather::piece::{Piece, centre};
+use crate::gather::receiver::receiver;
 use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;

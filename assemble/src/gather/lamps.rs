@@ -2,9 +2,9 @@
 //! a pyramid from the light, what is left of the polygon after all pyramids is lit, and a point of intensity I sends
 //! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
-use super::average::{Piece, centre};
-use super::cone::Cone;
-use super::receiver;
+use crate::gather::cone::Cone;
+use crate::gather::piece::{Piece, centre};
+use crate::gather::receiver::receiver;
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
 use equilux_bake::form_factor::solid_angle::solid_angle;

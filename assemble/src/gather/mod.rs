@@ -15,7 +15,11 @@ mod directions;
 pub mod faces;
 mod glowing;
 pub mod lamps;
+pub mod lights;
 pub mod outside;
+pub mod piece;
+pub mod points;
+pub mod receiver;
 pub mod sky;
 
 use crate::placed::Placed;
@@ -23,10 +27,11 @@ use equilux_bake::equilibrium::{added, apply, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Element, FaceId, Geometry, MaterialId, Rgb, Rows};
+use equilux_formats::{Element, Rgb, Rows};
 use faces::Faces;
 use glam::DVec3;
 use lamps::Lamp;
+use lights::Lights;
 
 /// What is nearer to a plane than this share of the region that is looked at lies in it: corners come from f32.
 const IN_PLANE: f64 = 1e-6;
@@ -47,37 +52,6 @@ pub struct Gather {
     shining: Vec<Rgb>,
     lamps: Vec<Lamp>,
     resolution: Resolution,
-}
-
-/// What shines into a scene from outside its surfaces.
-#[derive(Debug, Clone, Default)]
-pub struct Lights {
-    /// Points, spots and parallel light.
-    pub lamps: Vec<Lamp>,
-    /// Parallel light with a width.
-    pub suns: Vec<Sun>,
-    /// The sky's polygons, and what each sends, W/m².
-    pub sky: Option<(Geometry, Vec<Rgb>)>,
-}
-
-/// A directional light that has a width: polygons far away.
-#[derive(Debug, Clone)]
-pub struct Sun {
-    /// The light's name.
-    pub name: String,
-    /// What looks as wide as the sun from anywhere in the scene.
-    pub polygons: Geometry,
-    /// What they send, W/m².
-    pub radiosity: Rgb,
-    /// At most this arrives at the scene, W.
-    pub power: Rgb,
-}
-
-impl Lights {
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.lamps.is_empty() && self.suns.is_empty() && self.sky.is_none()
-    }
 }
 
 impl Gather {
@@ -186,17 +160,5 @@ impl Gather {
         };
         // Each call is short: whoever calls looks whether to stop.
         block(&request, &Monitor::default()).expect("nobody stops it").block
-    }
-}
-
-/// A point that receives, on one side of a face of the world.
-pub fn receiver(point: DVec3, normal: DVec3, face: FaceId) -> Element {
-    Element {
-        corners: Corners::triangle([point; 3]),
-        normal,
-        centroid: point,
-        area: 0.0,
-        material: MaterialId(0),
-        face,
     }
 }

@@ -1,8 +1,8 @@
 //! What shines into a scene but is none of its surfaces: the lights of its file, and a sky.
 
-use super::lamps::Lamp;
-use super::sky::{Radiances, dome};
-use super::{Lights, Sun};
+use crate::gather::lamps::Lamp;
+use crate::gather::lights::{Lights, Sun};
+use crate::gather::sky::{Radiances, dome};
 use equilux_bake::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
 use equilux_bake::world::World;

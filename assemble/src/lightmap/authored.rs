@@ -4,7 +4,7 @@
 //! Sides are of one chart where they touch both on the part and in the layout. Backs of double-sided surfaces have a
 //! sheet of their own, laid out like the fronts.
 
-use super::bands;
+use super::bands::bands;
 use super::chart::Chart;
 use super::contacts::opposed_contacts;
 use super::grid::{Grid, MARGIN};

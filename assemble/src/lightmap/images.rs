@@ -2,8 +2,8 @@
 
 use super::atlas::Tile;
 use super::{Holds, Lightmap};
-use crate::canvas::srgb;
-use crate::exposure::Exposure;
+use crate::picture::canvas::srgb;
+use crate::picture::exposure::Exposure;
 use equilux_formats::{MaterialId, Rgb};
 use exr::prelude::{
     Compression, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Vec2, WritableImage,
@@ -15,13 +15,16 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io::{self, Cursor};
 
-/// What the numbers in a lightmap mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// The units of a lightmap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Units {
-    /// Irradiance H, W/m². three.js divides by π itself.
+    /// Irradiance, W/m², as three.js expects it
+    #[default]
     Irradiance,
-    /// H/π, W/(m²·sr), what a white surface shows: Bevy multiplies a lightmap by the base colour and `lightmap_exposure`,
-    /// and takes the product for luminance, cd/m². With an exposure of 683 a watt of light is one of green, 683 lm.
+    // With an exposure of 683 a watt of light is one of green, 683 lm.
+    /// Irradiance over π, the radiance of a white surface, which Bevy multiplies by its lightmap_exposure (683 for watts) to
+    /// get cd/m²
     Bevy,
 }
 

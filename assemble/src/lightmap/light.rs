@@ -5,7 +5,7 @@
 use super::field::interpolated;
 use super::texels::{Piece, Texel, Texels};
 use crate::gather::faces::Plane;
-use crate::gather::{Gather, average};
+use crate::gather::{Gather, piece};
 use equilux_bake::equilibrium::added;
 use equilux_formats::Rgb;
 use glam::DVec3;
@@ -78,7 +78,7 @@ impl<'a> TexelLight<'a> {
             texel.pieces.iter().max_by(by_area).expect("a texel holds some of its chart").clone()
         };
         let pieces: Vec<Piece> = texels.iter().map(largest).collect();
-        let pieces: Vec<average::Piece> = pieces.iter().map(|piece| averaged(piece, planes)).collect();
+        let pieces: Vec<piece::Piece> = pieces.iter().map(|piece| averaged(piece, planes)).collect();
         self.gather.directions(&pieces).into_iter().map(|direction| direction.to_array()).collect()
     }
 
@@ -88,8 +88,8 @@ impl<'a> TexelLight<'a> {
 }
 
 /// The mean light of each texel's pieces.
-fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[average::Piece]) -> Vec<Rgb>) -> Vec<Rgb> {
-    let pieces: Vec<average::Piece> =
+fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[piece::Piece]) -> Vec<Rgb>) -> Vec<Rgb> {
+    let pieces: Vec<piece::Piece> =
         texels.iter().flat_map(|texel| &texel.pieces).map(|piece| averaged(piece, planes)).collect();
     let mut light = light(&pieces).into_iter();
     let mean = |texel: &&Texel| {
@@ -102,6 +102,6 @@ fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[average::Piece]) 
     texels.iter().map(mean).collect()
 }
 
-fn averaged<'a>(piece: &'a Piece, planes: &'a [Plane<'a>]) -> average::Piece<'a> {
-    average::Piece { corners: &piece.corners, normal: piece.normal, plane: &planes[piece.patch] }
+fn averaged<'a>(piece: &'a Piece, planes: &'a [Plane<'a>]) -> piece::Piece<'a> {
+    piece::Piece { corners: &piece.corners, normal: piece.normal, plane: &planes[piece.patch] }
 }

@@ -1,7 +1,7 @@
 //! What lies where in a lightmap, for programs: `lightmaps.json`.
 
+use super::names::direction_name;
 use super::pack::Spot;
-use super::write::direction_name;
 use super::{Lightmap, Units};
 use serde_json::{Value, json};
 

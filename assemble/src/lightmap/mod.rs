@@ -8,6 +8,7 @@
 
 pub mod atlas;
 mod authored;
+mod bands;
 mod bounds;
 pub mod chart;
 pub mod contacts;
@@ -20,6 +21,7 @@ mod least_squares;
 pub mod light;
 mod listing;
 mod model;
+mod names;
 mod overlap;
 pub mod pack;
 pub mod patch;
@@ -33,6 +35,7 @@ pub use images::Units;
 pub use write::{Saved, write};
 
 use atlas::{Atlas, Tile};
+use bands::bands;
 use equilux_bake::monitor::Monitor;
 use equilux_formats::{Material, MaterialId, Rgb, Scene};
 use rayon::prelude::*;
@@ -40,9 +43,9 @@ use std::ops::Range;
 use texels::Texels;
 use tints::Of;
 
-/// What a person chooses about lightmaps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wanted {
+/// Options of lightmaps.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LightmapOptions {
     /// The size of texels, metres; none to let the scene decide.
     pub texel_size: Option<f64>,
     /// What the numbers in the images mean.
@@ -81,9 +84,6 @@ enum Holds {
     /// Some of the chart.
     Chart,
 }
-
-/// About so many texels are worked on at once by a thread.
-const BAND: u32 = 16384;
 
 impl<'a> Lightmap<'a> {
     /// The lightmap of `scene`. `irradiance` gives texels theirs, W/m² of linear RGB, not divided by π, in their order.
@@ -203,10 +203,4 @@ fn with_margins(mut values: Vec<Vec<Option<Rgb>>>, tiles: &[Tile]) -> (Vec<Vec<R
     let holds = values.par_iter_mut().zip(tiles).map(fill).collect();
     let filled = |values: Vec<Option<Rgb>>| values.into_iter().map(Option::unwrap_or_default).collect();
     (values.into_iter().map(filled).collect(), holds)
-}
-
-/// The rows of a rectangle in pieces of which each fits in memory with its footprints.
-fn bands([width, height]: [u32; 2]) -> impl Iterator<Item = Range<u32>> {
-    let rows = (BAND / width).max(1);
-    (0..height.div_ceil(rows)).map(move |band| band * rows..(band * rows + rows).min(height))
 }

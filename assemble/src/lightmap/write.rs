@@ -6,9 +6,10 @@
 use super::images::{directions_exr, exr, half_scale, peaks, png, relative_png, shown_png};
 use super::listing::{File, listing};
 use super::model::{Look, model};
+use super::names::{direction_name, name};
 use super::{Lightmap, Units};
-use crate::exposure::Exposure;
 use crate::output_file;
+use crate::picture::exposure::Exposure;
 use equilux_formats::{Error, Result};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -70,20 +71,6 @@ fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> i
         .flat_map(|of| numbers().map(move |number| directions(number, of)))
         .collect::<io::Result<_>>()?;
     Ok(images.into_iter().flatten().chain(directions).chain(others).collect())
-}
-
-/// The first image has no number: mostly it is the only one.
-fn name(number: usize, ending: &str) -> String {
-    if number == 0 { format!("lightmap.{ending}") } else { format!("lightmap-{}.{ending}", number + 1) }
-}
-
-/// The same of directions.
-pub fn direction_name(number: usize) -> String {
-    if number == 0 {
-        "lightmap_direction.exr".into()
-    } else {
-        format!("lightmap_direction-{}.exr", number + 1)
-    }
 }
 
 /// Take away images numbered `first` and above that an earlier, larger lightmap left, and directions that nobody asked for.

@@ -5,12 +5,14 @@ use super::field::{Field, Light, Snapshot, Values, computed, row_sums};
 use super::history::{History, Point};
 use super::model::Model;
 use super::status::{Phase, Status};
-use crate::coupling::Coupled;
-use crate::exchange::{Outcome, StepTimes};
-use crate::observer::{Observer, Passed};
+use crate::equation::coupling::Coupled;
+use crate::equation::observer::Observer;
+use crate::exchange::listener::{FinishedRound, Listener};
+use crate::exchange::outcome::Outcome;
+use crate::exchange::step_times::StepTimes;
 use crate::placed::Placed;
-use crate::report::{Report, Seconds};
-use crate::steps;
+use crate::report::Report;
+use crate::report::seconds::{Seconds, rounds, seconds};
 use equilux_bake::oven::Baked;
 use equilux_bake::prepare::Prepared;
 use equilux_formats::{Camera, Optics, Rgb, Scene};
@@ -180,7 +182,7 @@ impl Observer for Board {
 
     fn coupled_all(&self, placed: &Placed, coupled: &[Coupled], optics: &Optics) {
         let (row_sums, computed) = (row_sums(placed, coupled), computed(placed, coupled));
-        let seconds = steps::seconds(placed, coupled, &StepTimes::none(coupled.len()));
+        let seconds = seconds(placed, coupled, &StepTimes::none(coupled.len()));
         let optics = Arc::new(optics.clone());
         self.tell(|state| {
             (state.row_sums, state.computed) = (Arc::new(row_sums), Arc::new(computed));
@@ -192,22 +194,35 @@ impl Observer for Board {
         });
     }
 
-    fn round(&self, passed: &Passed) {
+    fn settled(&self, outcome: &Outcome, irradiance: &[Rgb]) {
+        self.tell(|state| {
+            let all: Vec<usize> = (0..state.status.instances.len()).collect();
+            state.publish(&all, &outcome.radiosity);
+            if let Some(light) = &mut state.light {
+                light.irradiance = Some(Arc::new(irradiance.to_vec()));
+            }
+            state.status.phase = Phase::Writing;
+        });
+    }
+}
+
+impl Listener for Board {
+    fn round(&self, finished: &FinishedRound) {
         let mut state = self.state();
-        state.group += usize::from(passed.number == 1);
+        state.group += usize::from(finished.number == 1);
         let point = Point {
             group: state.group,
-            round: passed.number,
+            round: finished.number,
             seconds: state.began.map_or(0.0, |began| began.elapsed().as_secs_f64()),
-            bound: passed.known.error_bound,
-            relative: passed.known.relative_bound,
-            residual: passed.known.residual,
+            bound: finished.convergence.error_bound,
+            relative: finished.convergence.relative_bound,
+            residual: finished.convergence.residual,
         };
         state.history.add(point);
         let is_due = state.is_due();
-        if is_due || passed.is_last {
-            state.publish(passed.instances, passed.radiosity);
-            let Seconds { step5, step6, step7, step8, .. } = steps::rounds(passed.times);
+        if is_due || finished.is_last {
+            state.publish(finished.instances, finished.radiosity);
+            let Seconds { step5, step6, step7, step8, .. } = rounds(finished.times);
             state.status.seconds = Seconds { step5, step6, step7, step8, ..state.status.seconds.clone() };
         }
         drop(state);
@@ -216,18 +231,7 @@ impl Observer for Board {
         }
     }
 
-    fn enough(&self) -> bool {
+    fn ends_exchange(&self) -> bool {
         self.enough.load(Ordering::Relaxed)
-    }
-
-    fn settled(&self, outcome: &Outcome) {
-        self.tell(|state| {
-            let all: Vec<usize> = (0..state.status.instances.len()).collect();
-            state.publish(&all, &outcome.radiosity);
-            if let Some(light) = &mut state.light {
-                light.irradiance = Some(Arc::new(outcome.irradiance.clone()));
-            }
-            state.status.phase = Phase::Writing;
-        });
     }
 }

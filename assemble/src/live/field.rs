@@ -1,7 +1,7 @@
 //! One number or colour an element, as viewers fetch them. In go what a run has published; out come bytes.
 
 use super::model::Model;
-use crate::coupling::Coupled;
+use crate::equation::coupling::Coupled;
 use crate::placed::Placed;
 use equilux_formats::{Optics, Rgb};
 use rayon::prelude::*;

@@ -9,7 +9,7 @@ mod model;
 mod server;
 mod status;
 
-use crate::observer::Observer;
+use crate::equation::observer::Observer;
 use crate::report::Report;
 use board::Board;
 use equilux_bake::monitor::Monitor;

@@ -1,8 +1,8 @@
 //! The scene that viewers turn around. In go the parts in their places; out come bytes of their elements, and the eye that
 //! the pictures have.
 
-use crate::camera::View;
-use crate::exposure::Exposure;
+use crate::picture::camera::View;
+use crate::picture::exposure::Exposure;
 use crate::placed::Placed;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Camera, Element, Rgb};

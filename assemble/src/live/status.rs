@@ -1,8 +1,9 @@
 //! What a viewer is told in words: how far a run is and what became of its parts. In go parts, instances and their origins; out
 //! comes plain data for JSON.
 
-use crate::coupling::Coupled;
-use crate::report::{Report, Seconds};
+use crate::equation::coupling::Coupled;
+use crate::report::Report;
+use crate::report::seconds::Seconds;
 use equilux_bake::cached::Origin;
 use equilux_bake::oven::Baked;
 use equilux_bake::prepare::{Prepared, PreparedPart};

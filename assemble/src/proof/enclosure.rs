@@ -6,7 +6,7 @@
 //! w ≥ |r| + ρF w =: w' follows w' ≥ |r| + ρF w'. F itself is not known where an entry stands for a cluster, but with the
 //! cluster's largest w in place of each F w only grows, and then all of this holds the more.
 
-use crate::exchange::Node;
+use crate::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::{added, apply, largest, scaled};
 use equilux_bake::treecode::MISSED;
 use equilux_formats::{ClusterTree, Precision, Rgb, SINGLE_ROUNDING};
@@ -16,13 +16,13 @@ use rayon::prelude::*;
 const SWEEPS: (f64, usize) = (1e-2, 200);
 
 /// Whether entries may stand for clusters, rounded to f32.
-pub fn is_compressed(nodes: &[Node]) -> bool {
+pub fn is_compressed(nodes: &[InstanceSystem]) -> bool {
     nodes.iter().any(|node| node.self_block.precision() == Precision::Single)
 }
 
 /// The form factors of a scene as they are kept.
 pub struct Kept<'a> {
-    nodes: &'a [Node<'a>],
+    nodes: &'a [InstanceSystem<'a>],
 }
 
 /// What a row's entries may be off by because they are kept as f32, and what it may miss, all entries together. The entries
@@ -31,7 +31,7 @@ pub const OFF: f64 = SINGLE_ROUNDING + MISSED;
 
 impl<'a> Kept<'a> {
     /// The form factors that an exchange used.
-    pub fn of(nodes: &'a [Node<'a>]) -> Self {
+    pub fn of(nodes: &'a [InstanceSystem<'a>]) -> Self {
         Self { nodes }
     }
 
@@ -39,7 +39,7 @@ impl<'a> Kept<'a> {
     /// cluster of mean radiosity B̄ stands for Σ_j F_ij B_j = F_iC B̄ + Σ_j F_ij (B_j − B̄), and the second term is at most
     /// F_iC max_j |B_j − B̄|. It adds up what mostly cancels.
     pub fn spread(&self, radiosity: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
-        let spreads = |(node, b): (&Node, &Vec<Rgb>)| {
+        let spreads = |(node, b): (&InstanceSystem, &Vec<Rgb>)| {
             let mut spreads = Vec::new();
             node.clusters.append_spreads(&node.clusters.means(b), &mut spreads);
             spreads
@@ -87,7 +87,7 @@ impl<'a> Kept<'a> {
     fn reflected(&self, values: &[Vec<Rgb>], rounded: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
         let (all, elements) = (values.concat(), rounded.concat());
         let most = largest(&elements);
-        let of = |(k, node): (usize, &Node)| -> Vec<Rgb> {
+        let of = |(k, node): (usize, &InstanceSystem)| -> Vec<Rgb> {
             let (own, others) = (apply(node.self_block, &values[k]), apply(node.coupling, &all));
             let row = |i: usize| {
                 let off = most.map(|most| OFF * most);

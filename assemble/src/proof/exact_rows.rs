@@ -2,7 +2,7 @@
 //! element. A few rows tell how large r is, all of them bound the error.
 
 use super::sample::Chosen;
-use crate::exchange::Node;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use equilux_bake::equilibrium::{added, apply, scaled, subtract};
 use equilux_bake::monitor::Monitor;
@@ -27,7 +27,7 @@ pub struct Residuals {
 /// monitor was stopped.
 pub fn residuals(
     placed: &Placed,
-    nodes: &[Node],
+    nodes: &[InstanceSystem],
     radiosity: &[Vec<Rgb>],
     chosen: &[Chosen],
     monitor: &Monitor,

@@ -3,12 +3,15 @@
 //! for every element, and what exact rows of some receivers say.
 
 pub mod enclosure;
+pub mod endless;
 pub mod exact_rows;
 pub mod sample;
 
-use crate::account::mean_over_area;
-use crate::exchange::{Node, Outcome, residual};
+use crate::exchange::outcome::Outcome;
+use crate::exchange::system::InstanceSystem;
+use crate::exchange::system::residual;
 use crate::placed::Placed;
+use crate::statistics::mean_over_area;
 use enclosure::{Kept, is_compressed};
 use equilux_bake::equilibrium::added;
 use equilux_bake::monitor::Monitor;
@@ -50,7 +53,7 @@ pub struct Measured {
 /// then the exchange's own bound says it all.
 pub fn prove(
     placed: &Placed,
-    nodes: &[Node],
+    nodes: &[InstanceSystem],
     outcome: &Outcome,
     wanted: ExactRows,
     monitor: &Monitor,
@@ -79,13 +82,14 @@ pub fn prove(
 
 fn measured(
     placed: &Placed,
-    nodes: &[Node],
+    nodes: &[InstanceSystem],
     outcome: &Outcome,
     chosen: &[Chosen],
     found: &Residuals,
 ) -> Measured {
     let reflectance: Vec<Rgb> = nodes.iter().flat_map(|node| node.optics.reflectance.clone()).collect();
-    let [mean, rho] = [&outcome.radiosity, &reflectance].map(|values| mean_over_area(placed, values));
+    let [mean, rho] =
+        [&outcome.radiosity, &reflectance].map(|values| mean_over_area(&placed.world.elements, values));
     let rms = rms(placed, chosen, &found.values);
     let largest = equilux_bake::equilibrium::largest(&found.values.concat());
     let worst = |of: &dyn Fn(usize) -> f64| (0..3).map(of).fold(0.0, f64::max);

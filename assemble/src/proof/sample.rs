@@ -4,7 +4,7 @@
 //! Every part has a share of the draws by its area, at least one, at even distances along the area of its clusters in
 //! order (systematic sampling, size-proportional: Cochran 1977, §11.9): large faces are drawn more often than small ones.
 
-use crate::exchange::Node;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use std::ops::Range;
 
@@ -15,6 +15,13 @@ pub enum ExactRows {
     About(usize),
     /// All.
     All,
+}
+
+impl Default for ExactRows {
+    /// Enough to estimate the error of clusters to a few percent of itself.
+    fn default() -> Self {
+        Self::About(256)
+    }
 }
 
 /// A cluster of receivers.
@@ -29,7 +36,7 @@ pub struct Chosen {
 }
 
 /// The clusters whose rows are to be exact, in order.
-pub fn choose(placed: &Placed, nodes: &[Node], wanted: ExactRows) -> Vec<Chosen> {
+pub fn choose(placed: &Placed, nodes: &[InstanceSystem], wanted: ExactRows) -> Vec<Chosen> {
     let all: Vec<Chosen> = (0..nodes.len()).flat_map(|k| clusters(placed, nodes, k)).collect();
     let elements = placed.world.elements.len();
     let rows = match wanted {
@@ -54,7 +61,7 @@ pub fn choose(placed: &Placed, nodes: &[Node], wanted: ExactRows) -> Vec<Chosen>
 }
 
 /// The clusters of an instance's receivers, each with its own area.
-fn clusters(placed: &Placed, nodes: &[Node], instance: usize) -> Vec<Chosen> {
+fn clusters(placed: &Placed, nodes: &[InstanceSystem], instance: usize) -> Vec<Chosen> {
     let elements = &placed.world.elements[placed.world.elements_of(instance)];
     let coupling = nodes[instance].coupling;
     let cluster = |group: usize| {

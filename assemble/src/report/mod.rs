@@ -1,16 +1,21 @@
 //! What a run says about itself: one JSON object for machines, tables for people.
 
+pub mod advice;
 mod checks;
-pub mod inside;
+pub mod fates;
+pub(crate) mod light_notes;
 mod notes;
+pub mod process;
+pub mod seconds;
 pub mod summary;
 pub mod text;
+pub(crate) mod unlit;
 
-pub use summary::{Run, summary};
-
-use crate::advice::Advice;
 use crate::exchange::energy::Energy;
-use serde::{Deserialize, Serialize};
+use crate::report::advice::Advice;
+use crate::report::seconds::Seconds;
+use crate::statistics::Defect;
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The whole report, as `--json` prints it. Seconds unless said, linear RGB, W or W/m².
@@ -110,47 +115,6 @@ impl Blocks {
     }
 }
 
-/// The paper's steps: 1, 2 own blocks of the first part and of the others; 3, 4 coupling into the first and into the
-/// others; 5, 6 equilibrium in the first and in the others; 7 transfer to the others, 8 to the first.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Seconds {
-    /// F₁₁.
-    pub step1: f64,
-    /// F₂₂ (all other parts).
-    pub step2: f64,
-    /// F₁₂.
-    pub step3: f64,
-    /// F₂₁.
-    pub step4: f64,
-    /// Equilibrium in part 1.
-    pub step5: f64,
-    /// Equilibrium in part 2 (all others).
-    pub step6: f64,
-    /// Transfer from 1 to 2.
-    pub step7: f64,
-    /// Transfer from 2 to 1.
-    pub step8: f64,
-    /// All steps one after the other.
-    pub t1: f64,
-    /// Own blocks and equilibria of the parts side by side.
-    pub t2: f64,
-    /// Everything side by side that can be: the longest chain.
-    pub t3: f64,
-    /// The exchange beside steps 5–8: the coarse and the Krylov space, bounds and energy accounts; wall time.
-    pub exchange_overhead: f64,
-    /// The light of points that were asked for; wall time.
-    pub points: f64,
-    /// The same in processor time, where the system tells.
-    pub points_cpu: Option<f64>,
-    /// Wall time from the scene's file until the light of all elements is known: everything but proofs and outputs.
-    pub solve: f64,
-    /// The same in processor time, where the system tells.
-    pub solve_cpu: Option<f64>,
-    /// Wall time of the run.
-    pub total: f64,
-}
-
 /// One round of the exchange.
 #[derive(Debug, Clone, Serialize)]
 pub struct RoundReport {
@@ -217,17 +181,6 @@ pub struct Bytes {
     pub peak_rss: Option<usize>,
 }
 
-/// Distance of row sums from one.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Defect {
-    /// The worst row.
-    pub max: f64,
-    /// The mean over all rows.
-    pub mean: f64,
-    /// By how much the largest sum exceeds one; 0 if none does.
-    pub excess: f64,
-}
-
 /// The comparison with the classic matrix.
 #[derive(Debug, Clone, Serialize)]
 pub struct Verify {
@@ -245,28 +198,4 @@ pub struct Verify {
     pub matrix_bytes: usize,
     /// The most the process held after the classic solution.
     pub peak_rss: Option<usize>,
-}
-
-/// The most memory this process held so far, bytes; none where the system does not tell.
-pub fn peak_rss() -> Option<usize> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
-    let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
-    Some(kilobytes * 1024)
-}
-
-/// Processor time that this process took so far, all threads together, seconds; none where the system does not tell. In
-/// steps of a hundredth.
-pub fn cpu_seconds() -> Option<f64> {
-    const TICKS_PER_SECOND: f64 = 100.0;
-    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The second field, the program's name in parentheses, may hold anything; user and system time are the 14th and 15th.
-    let after_name = stat.rsplit_once(')')?.1;
-    let ticks: Vec<f64> = after_name.split_whitespace().skip(11).take(2).flat_map(str::parse).collect();
-    (ticks.len() == 2).then(|| ticks.iter().sum::<f64>() / TICKS_PER_SECOND)
-}
-
-/// Processor time since [`cpu_seconds`] was `start`, seconds; none where the system does not tell.
-pub fn cpu_since(start: Option<f64>) -> Option<f64> {
-    cpu_seconds().zip(start).map(|(now, start)| now - start)
 }

@@ -1,19 +1,25 @@
 //! Sentences on what a person should know of the parts in their places: what stands in what, and what lies on what.
 
-use crate::coupling::Coupled;
-use crate::exchange::{Node, Outcome};
+use crate::equation::coupling::Coupled;
+use crate::equation::interpenetration;
+use crate::exchange::outcome::Outcome;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use crate::report::checks::checks;
-use crate::report::inside;
 
 /// More sentences of one kind than this are made one.
 const FEW: usize = 4;
 
 /// All sentences.
-pub fn notes(placed: &Placed, coupled: &[Coupled], nodes: &[Node], outcome: &Outcome) -> Vec<String> {
+pub fn notes(
+    placed: &Placed,
+    coupled: &[Coupled],
+    nodes: &[InstanceSystem],
+    outcome: &Outcome,
+) -> Vec<String> {
     standing_inside(placed, coupled)
         .into_iter()
-        .chain(inside::notes(placed))
+        .chain(interpenetration::notes(placed))
         .chain(checks(placed, nodes, outcome))
         .collect()
 }

@@ -1,17 +1,22 @@
 //! From the results of a run to its report.
 
-use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify, peak_rss};
-use crate::account::{rms_over_mean, row_sum_defect};
-use crate::classic::{Classic, largest_difference, mean_difference};
-use crate::coupling::Coupled;
-use crate::exchange::{Node, Outcome, Round};
+use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify};
+use crate::equation::Equation;
+use crate::equation::coupling::Coupled;
+use crate::exchange::outcome::Outcome;
+use crate::exchange::outcome::Round;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use crate::proof::{Measured, Proof};
+use crate::report::fates::seen_instances;
 use crate::report::notes::notes;
-use crate::steps::seconds;
+use crate::report::process::peak_rss;
+use crate::report::seconds::seconds;
+use crate::statistics::{largest_difference, mean_difference, rms_over_mean, row_sum_defect};
+use crate::verify::Classic;
 use equilux_bake::equilibrium::largest;
 use equilux_bake::oven::Baked;
-use equilux_formats::{Optics, Rgb};
+use equilux_formats::Rgb;
 use std::collections::BTreeMap;
 
 /// Reasons to leave something out, as they follow a count.
@@ -30,17 +35,13 @@ pub const SHARED: &str = "own blocks that equal parts share";
 /// The results of a run.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
-    /// The parts in their places.
-    pub placed: &'a Placed,
-    /// What couples them, one entry an instance.
-    pub coupled: &'a [Coupled],
-    /// Their shares of the equation.
-    pub nodes: &'a [Node<'a>],
-    /// Optics of all elements.
-    pub optics: &'a Optics,
+    /// The equation that was solved.
+    pub equation: &'a Equation,
+    /// The equation of each instance.
+    pub systems: &'a [InstanceSystem<'a>],
     /// The exchange.
     pub outcome: &'a Outcome,
-    /// What is known about the error that clusters make, if there are clusters.
+    /// What is proved of the error of clusters, if there are clusters.
     pub proof: Option<&'a Proof>,
     /// The classic solution, if asked for.
     pub classic: Option<&'a Classic>,
@@ -48,7 +49,8 @@ pub struct Run<'a> {
 
 /// All that the results tell; names, files, and what the system tells are left to the caller.
 pub fn summary(run: &Run) -> Report {
-    let Run { placed, coupled, nodes, outcome, .. } = *run;
+    let Run { equation, systems, outcome, .. } = *run;
+    let Equation { placed, coupled, .. } = equation;
     let elements = placed.world.elements.len();
     let error = error(run);
     Report {
@@ -58,7 +60,7 @@ pub fn summary(run: &Run) -> Report {
         instances: placed.instances.len(),
         element_size: String::new(),
         blocks: blocks(run),
-        form_factors_stored: nodes.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
+        form_factors_stored: systems.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
         form_factors_computed: form_factors_computed(placed, coupled),
         seconds: seconds(placed, coupled, &outcome.times),
         rounds: rounds(run),
@@ -66,14 +68,14 @@ pub fn summary(run: &Run) -> Report {
         groups: outcome.groups,
         converged: outcome.converged,
         error,
-        bytes: memory(nodes, elements),
-        energy: outcome.known.energy,
+        bytes: memory(systems, elements),
+        energy: outcome.convergence.energy,
         column_sums: outcome.column_sums,
-        row_sum_defect: row_sum_defect(nodes),
+        row_sum_defect: row_sum_defect(systems),
         verify: run.classic.map(|classic| verification(placed, classic, outcome)),
         explained: vec![],
         advice: None,
-        notes: notes(placed, coupled, nodes, outcome),
+        notes: notes(placed, coupled, systems, outcome),
         outputs: vec![],
     }
 }
@@ -97,29 +99,29 @@ fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
     let off = classic.zip(round.radiosity.as_ref()).map(|(classic, b)| most_off(b, &classic.radiosity));
     RoundReport {
         round: round.number,
-        residual: round.known.residual,
-        error_bound: round.known.error_bound,
-        relative_bound: round.known.relative_bound,
+        residual: round.convergence.residual,
+        error_bound: round.convergence.error_bound,
+        relative_bound: round.convergence.relative_bound,
         true_error: off,
-        energy: round.known.energy,
+        energy: round.convergence.energy,
         seconds: round.time.as_secs_f64(),
     }
 }
 
 fn error(run: &Run) -> ErrorReport {
-    let (placed, radiosity) = (run.placed, &run.outcome.radiosity);
+    let (placed, radiosity) = (&run.equation.placed, &run.outcome.radiosity);
     let most = |bound: &[[f64; 3]]| largest(bound).into_iter().fold(0.0, f64::max);
     let Some(proof) = run.proof else {
-        let proved = run.outcome.known.error_bound;
+        let proved = run.outcome.convergence.error_bound;
         let everywhere = vec![[proved; 3]; radiosity.len()];
-        let proved_rms = rms_over_mean(placed, &everywhere, radiosity);
+        let proved_rms = rms_over_mean(&placed.world.elements, &everywhere, radiosity);
         return ErrorReport { proved, proved_rms, proved_from: "rounds", spread: None, exact_rows: None };
     };
     let measured = proof.measured.as_ref();
     let all = measured.is_some_and(|measured| measured.rows == radiosity.len());
     ErrorReport {
         proved: most(&proof.bound),
-        proved_rms: rms_over_mean(placed, &proof.bound, radiosity),
+        proved_rms: rms_over_mean(&placed.world.elements, &proof.bound, radiosity),
         proved_from: if all { "exact rows" } else { "spread" },
         spread: Some(most(&proof.spread)),
         exact_rows: measured.map(exact_rows),
@@ -139,7 +141,7 @@ fn exact_rows(measured: &Measured) -> ExactRowsReport {
 }
 
 fn blocks(run: &Run) -> Blocks {
-    let (placed, coupled) = (run.placed, run.coupled);
+    let Equation { placed, coupled, .. } = run.equation;
     let baked = placed.parts.iter().filter(|part| !part.form_factors.is_reused()).count();
     let corrected = coupled.iter().filter(|c| c.corrected.is_some()).count();
     let mut blocks = Blocks {
@@ -161,7 +163,7 @@ fn blocks(run: &Run) -> Blocks {
 
 fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
     let spared = run.outcome.spared;
-    let shared = run.placed.instances.len() - run.placed.parts.len();
+    let shared = run.equation.placed.instances.len() - run.equation.placed.parts.len();
     let counts = [
         (UNSEEN, unseen),
         (BLACK_ROWS, spared.black_rows),
@@ -172,15 +174,6 @@ fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
 }
 
-/// Which instances a block's receivers see anything of.
-pub fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
-    let mut seen = vec![false; placed.instances.len()];
-    for sender in coupled.coupling.senders_seen() {
-        seen[placed.world.instance_of_node(sender)] = true;
-    }
-    seen
-}
-
 fn form_factors_computed(placed: &Placed, coupled: &[Coupled]) -> usize {
     let own = placed.parts.iter().filter(|p| !p.form_factors.is_reused()).map(|p| p.part.self_block.stored());
     let corrected = coupled.iter().filter_map(|own| own.corrected.as_ref()).map(|block| block.computed);
@@ -188,8 +181,8 @@ fn form_factors_computed(placed: &Placed, coupled: &[Coupled]) -> usize {
     own.chain(corrected).chain(coupling).sum()
 }
 
-fn memory(nodes: &[Node], elements: usize) -> Bytes {
-    let sizes = || nodes.iter().flat_map(|n| [n.self_block.bytes(), n.coupling.bytes()]);
+fn memory(systems: &[InstanceSystem], elements: usize) -> Bytes {
+    let sizes = || systems.iter().flat_map(|n| [n.self_block.bytes(), n.coupling.bytes()]);
     Bytes {
         dense: elements * elements * size_of::<f64>(),
         stored: sizes().sum(),
@@ -201,7 +194,7 @@ fn memory(nodes: &[Node], elements: usize) -> Bytes {
 fn verification(placed: &Placed, classic: &Classic, outcome: &Outcome) -> Verify {
     Verify {
         max_rel_diff: largest_difference(&outcome.radiosity, &classic.radiosity),
-        rms_rel_diff: mean_difference(placed, &outcome.radiosity, &classic.radiosity),
+        rms_rel_diff: mean_difference(&placed.world.elements, &outcome.radiosity, &classic.radiosity),
         max_abs_diff: most_off(&outcome.radiosity, &classic.radiosity),
         form_factor_seconds: classic.form_factor_time.as_secs_f64(),
         solve_seconds: classic.solve_time.as_secs_f64(),

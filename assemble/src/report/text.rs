@@ -1,7 +1,7 @@
 //! The report for a person.
 
 use super::{ErrorReport, Report, RoundReport};
-use crate::advice::Advice;
+use crate::report::advice::Advice;
 use std::collections::BTreeMap;
 
 impl Report {

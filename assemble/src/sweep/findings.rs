@@ -1,7 +1,7 @@
 //! Conclusions from comparing runs, in sentences: whether the default settings are a good choice, and which work the scene
 //! did not need.
 
-pub use super::numbers::{percent, seconds};
+use super::numbers::{percent, seconds};
 use super::row::Row;
 use super::run::Run;
 use super::setting::{DEFAULT_TOLERANCE, Kind, Setting};

@@ -1,7 +1,7 @@
 //! Points spread over a scene's surfaces to compare light at: the same in every run, and as many on each element as its
 //! area asks for.
 
-use crate::points::Place;
+use crate::gather::points::Place;
 use equilux_formats::Element;
 use glam::DVec3;
 

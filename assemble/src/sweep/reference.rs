@@ -1,7 +1,7 @@
 //! What runs are compared with: irradiance at points, from a file or from the finest run of the sweep.
 
 use super::run::Run;
-use crate::points::places;
+use crate::gather::points::places;
 use crate::table::Table;
 use equilux_formats::{Result, Rgb};
 use glam::DVec3;

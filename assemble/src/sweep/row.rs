@@ -5,7 +5,7 @@ use super::errors::Errors;
 use super::reference::Reference;
 use super::run::Run;
 use super::setting::Setting;
-use crate::report::Seconds;
+use crate::report::seconds::Seconds;
 use serde::Serialize;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 //! JSON so that a sweep that was stopped goes on where it was.
 
 use super::setting::Setting;
-use crate::report::Seconds;
+use crate::report::seconds::Seconds;
 use equilux_formats::Rgb;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

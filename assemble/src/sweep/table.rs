@@ -3,7 +3,7 @@
 
 use super::row::Row;
 use super::setting::Kind;
-use crate::points::Place;
+use crate::gather::points::Place;
 
 /// The first line: seconds are wall time unless `cpu`, errors shares of the mean, and what is not known is empty.
 pub const HEADER: [&str; 25] = [

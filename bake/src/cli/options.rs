@@ -5,7 +5,7 @@ use crate::bisect::Cut;
 use crate::elements::ElementSize;
 use crate::prepare::{Division, Preparation};
 use crate::treecode::Resolution;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use equilux_formats::LocalSolver;
 use std::path::PathBuf;
 
@@ -32,39 +32,15 @@ pub struct SceneOptions {
     /// Make parts by this plane, such as x=1.5; may be given several times
     #[arg(long, value_name = "AXIS=METRES", value_parser = cut)]
     pub cut: Vec<Cut>,
-    /// Who solves a part's own equilibrium [default: direct for small parts, iterative for large]
+    /// Solver for each part's local equilibrium [default: direct for small parts, iterative for large]
     #[arg(long, value_name = "SOLVER")]
-    pub local_solver: Option<Solver>,
+    pub local_solver: Option<LocalSolver>,
     /// Threads to use [default: all]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024))]
     pub threads: Option<u32>,
     /// Print one JSON object on stdout and nothing else
     #[arg(long)]
     pub json: bool,
-}
-
-/// A local solver's name on the command line.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum Solver {
-    /// LU factors, kept with the part
-    Direct,
-    /// Gauss-Seidel sweeps
-    GaussSeidel,
-    /// Progressive refinement: the brightest unshot element first
-    Progressive,
-    /// GMRES on the stored rows
-    Iterative,
-}
-
-impl From<Solver> for LocalSolver {
-    fn from(solver: Solver) -> Self {
-        match solver {
-            Solver::Direct => Self::Direct,
-            Solver::GaussSeidel => Self::GaussSeidel,
-            Solver::Progressive => Self::Progressive,
-            Solver::Iterative => Self::Iterative,
-        }
-    }
 }
 
 impl SceneOptions {
@@ -75,12 +51,11 @@ impl SceneOptions {
             None if self.cut.is_empty() => Division::Authored,
             None => Division::Cuts(self.cut.clone()),
         };
-        let local_solver = self.local_solver.map(LocalSolver::from);
         Preparation {
             element_size: self.element_size,
             division,
             resolution: Resolution::for_tolerance(self.tolerance),
-            local_solver,
+            local_solver: self.local_solver,
         }
     }
 

@@ -4,9 +4,9 @@ use crate::cases::Finding;
 use crate::model::{Model, Node};
 use crate::table::Table;
 use crate::workshop::Workshop;
-use equilux_assemble::exchange::Goal;
+use equilux_assemble::exchange::settings::Goal;
 use equilux_assemble::report::Report;
-use equilux_assemble::run::{Job, run};
+use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Division, Preparation};
@@ -90,13 +90,12 @@ pub fn solved_file(model: &Model, setting: &Setting) -> Result<Solved> {
     model.write(&workshop.path("scene.glb"));
     let table = workshop.path("table.csv");
     let job = workshop.job(setting.division.clone());
-    let job = Job {
-        preparation: Preparation { element_size: Some(setting.size), ..job.preparation },
-        goal: Goal { error: setting.error, rounds: MOST_ROUNDS },
-        verify: setting.verify,
-        elements: Some(table.clone()),
-        ..job
-    };
+    let mut job = job;
+    job.settings.preparation =
+        Preparation { element_size: Some(setting.size), ..job.settings.preparation.clone() };
+    job.settings.goal = Goal { error: setting.error, rounds: MOST_ROUNDS };
+    job.outputs.verify = setting.verify;
+    job.outputs.elements = Some(table.clone());
     let report = run(&job, &Monitor::default())?;
     Ok(Solved { elements: lit(&Table::read(&table)), report })
 }

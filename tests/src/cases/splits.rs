@@ -4,8 +4,7 @@ use super::solve::{Setting, light};
 use super::{Case, Finding};
 use crate::rooms::{echoing, furnished};
 use crate::workshop::{Workshop, assembled};
-use equilux_assemble::exchange::Method;
-use equilux_assemble::run::Job;
+use equilux_assemble::exchange::settings::Method;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_formats::LocalSolver;
 use rayon::ThreadPoolBuilder;
@@ -46,16 +45,23 @@ fn difference(found: Option<f64>) -> Finding {
 /// All local solvers, and both of the paper's methods, on one division. The cache is shared: what is compared is the solution.
 fn every_way(cells: usize) -> Finding {
     let workshop = Workshop::with(&furnished());
-    let job = Job { verify: true, ..workshop.job(Division::Bisect(cells)) };
+    let mut job = workshop.job(Division::Bisect(cells));
+    job.outputs.verify = true;
     use LocalSolver::*;
-    let solvers = [Direct, GaussSeidel, Progressive, Iterative].map(|solver| Job {
-        preparation: Preparation { local_solver: Some(solver), ..job.preparation.clone() },
-        ..job.clone()
+    let solvers = [Direct, GaussSeidel, Progressive, Iterative].map(|solver| {
+        let mut job = job.clone();
+        job.settings.preparation =
+            Preparation { local_solver: Some(solver), ..job.settings.preparation.clone() };
+        job
     });
-    let methods = [Method::Jacobi, Method::GaussSeidel].map(|method| Job { method, ..job.clone() });
+    let methods = [Method::Jacobi, Method::GaussSeidel].map(|method| {
+        let mut job = job.clone();
+        job.settings.method = method;
+        job
+    });
     Finding::worst(solvers.iter().chain(&methods).map(|job| {
         let report = assembled(job);
-        assert!(report.converged, "{:?}: {:?}", job.method, report.rounds.last());
+        assert!(report.converged, "{:?}: {:?}", job.settings.method, report.rounds.last());
         difference(report.verify.map(|verify| verify.max_rel_diff)).after(Some(report.rounds.len()))
     }))
 }

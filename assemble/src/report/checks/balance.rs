@@ -4,7 +4,8 @@
 //! to a receiver than the receiver is wide, the sum may be far from one: a lamp under a ceiling, for instance.
 
 use super::view::View;
-use crate::exchange::{Node, Outcome};
+use crate::exchange::outcome::Outcome;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use std::collections::BTreeMap;
 
@@ -12,8 +13,13 @@ use std::collections::BTreeMap;
 const SHARE: f64 = 0.01;
 
 /// A sentence, if a closed scene absorbs noticeably more or less than it emits.
-pub(super) fn note(placed: &Placed, nodes: &[Node], outcome: &Outcome, view: &View) -> Option<String> {
-    let energy = &outcome.known.energy;
+pub(super) fn note(
+    placed: &Placed,
+    nodes: &[InstanceSystem],
+    outcome: &Outcome,
+    view: &View,
+) -> Option<String> {
+    let energy = &outcome.convergence.energy;
     let channel = (0..3).max_by(|&a, &b| energy.emitted[a].total_cmp(&energy.emitted[b]))?;
     let (emitted, absorbed) = (energy.emitted[channel], energy.absorbed[channel]);
     // What falls on black backs is absorbed there and not counted.
@@ -39,7 +45,7 @@ pub(super) fn note(placed: &Placed, nodes: &[Node], outcome: &Outcome, view: &Vi
 /// The sender and the receiver between which most power is gained, or lost.
 fn culprits(
     placed: &Placed,
-    nodes: &[Node],
+    nodes: &[InstanceSystem],
     outcome: &Outcome,
     channel: usize,
     gained: bool,

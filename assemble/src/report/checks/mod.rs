@@ -5,12 +5,13 @@ mod balance;
 mod overfull;
 mod view;
 
-use crate::exchange::{Node, Outcome};
+use crate::exchange::outcome::Outcome;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use view::View;
 
 /// Sentences about rows above one, energy that does not add up, and surfaces that show their black backs.
-pub fn checks(placed: &Placed, nodes: &[Node], outcome: &Outcome) -> Vec<String> {
+pub fn checks(placed: &Placed, nodes: &[InstanceSystem], outcome: &Outcome) -> Vec<String> {
     let view = View::of(placed);
     let overfull = overfull::notes(placed, nodes, &view);
     let balance = balance::note(placed, nodes, outcome, &view);

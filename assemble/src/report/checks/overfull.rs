@@ -2,9 +2,9 @@
 //! is wrong; a note says which.
 
 use super::view::View;
-use crate::account::row_sums;
-use crate::exchange::Node;
+use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
+use crate::statistics::row_sums;
 use equilux_bake::visibility::rays::Hit;
 
 /// No sum of a row is further above one than this: the rounding of its entries.
@@ -17,8 +17,8 @@ const SAME_PLACE: f64 = 1e-5;
 const NAMED: usize = 3;
 
 /// The worst row of each of the first few instances that have one above one.
-pub(super) fn notes(placed: &Placed, nodes: &[Node], view: &View) -> Vec<String> {
-    let worst = |node: &Node| row_sums(node).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+pub(super) fn notes(placed: &Placed, nodes: &[InstanceSystem], view: &View) -> Vec<String> {
+    let worst = |node: &InstanceSystem| row_sums(node).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
     let rows = nodes.iter().enumerate().filter_map(|(k, node)| worst(node).map(|(row, sum)| (k, row, sum)));
     let overfull: Vec<(usize, usize, f64)> = rows.filter(|&(_, _, sum)| sum > 1.0 + ROUNDING).collect();
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
@@ -48,7 +48,7 @@ pub(super) fn notes(placed: &Placed, nodes: &[Node], view: &View) -> Vec<String>
 /// The instances of two senders of a row that lie at one place, if there are any.
 fn lying_together(
     placed: &Placed,
-    nodes: &[Node],
+    nodes: &[InstanceSystem],
     view: &View,
     (k, row): (usize, usize),
 ) -> Option<[usize; 2]> {

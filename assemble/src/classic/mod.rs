@@ -1,0 +1,245 @@
+//! The classic ways to radiosity, to compare with: one matrix of the whole scene, element by element, dense, exact or with
+//! rays; or progressive refinement, which keeps no matrix. No parts, no clusters, no cache. The light goes through the same
+//! outputs as ours.
+
+mod dense;
+mod progressive;
+pub mod rays;
+
+use crate::equation::coupling::Coupler;
+use crate::equation::direct::{direct, driven, with_direct};
+use crate::equation::optics::{joined, whole_optics};
+use crate::gather::Gather;
+use crate::gather::outside::lights;
+use crate::gather::points::{self, Place, PointLight};
+use crate::gather::sky::Sky;
+use crate::outputs::{POINTS, unusable};
+use crate::placed::Placed;
+use crate::report::light_notes::light_notes;
+use crate::report::process::{cpu_seconds, cpu_since, peak_rss};
+use dense::Dense;
+use equilux_bake::cached::Origin;
+use equilux_bake::elements::ElementSize;
+use equilux_bake::gltf_import::import_scene;
+use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::{Baked, geometry_manifest};
+use equilux_bake::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
+use equilux_bake::treecode::EXACT;
+use equilux_formats::{
+    Answers, BakedPart, Error, LightUnits, LocalEquilibrium, Optics, Result, Rgb, Rows, Store,
+};
+use glam::DVec3;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// How the whole scene is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Way {
+    /// The exact matrix.
+    Exact,
+    /// The matrix with so many rays a pair.
+    Rays(u32),
+    /// Progressive refinement until this share of the light is left unshot.
+    Progressive(f64),
+}
+
+/// What to solve.
+#[derive(Debug, Clone)]
+pub struct ClassicJob {
+    /// The scene's file.
+    pub scene: PathBuf,
+    /// Size of elements; none to let the scene decide.
+    pub element_size: Option<ElementSize>,
+    /// How.
+    pub way: Way,
+    /// What the intensities of the file's lights mean; none for what each file suggests.
+    pub light_units: Option<LightUnits>,
+    /// What shines from all around.
+    pub sky: Option<Sky>,
+    /// The folder that gets `<scene>/`.
+    pub out: PathBuf,
+    /// Points to gather light at.
+    pub points: Option<PathBuf>,
+}
+
+/// What a run says; the names are those of the report of our own runs.
+#[derive(Debug, Clone, Serialize)]
+pub struct ClassicReport {
+    /// The scene's name.
+    pub scene: String,
+    /// Number of elements.
+    pub elements: usize,
+    /// Where time went.
+    pub seconds: Seconds,
+    /// Memory.
+    pub bytes: Bytes,
+    /// Elements that shot, one after the other, if it was progressive refinement.
+    pub shots: Option<usize>,
+    /// What a person should know of the scene's light.
+    pub notes: Vec<String>,
+    /// What was written.
+    pub outputs: Vec<String>,
+}
+
+/// Seconds.
+#[derive(Debug, Clone, Serialize)]
+pub struct Seconds {
+    /// Form factors, summed over threads.
+    pub form_factors: f64,
+    /// Wall time from the file to the light of all elements.
+    pub solve: f64,
+    /// The same in processor time, where the system tells.
+    pub solve_cpu: Option<f64>,
+    /// Wall time to gather light at points.
+    pub points: f64,
+    /// The same in processor time, where the system tells.
+    pub points_cpu: Option<f64>,
+    /// Wall time of the run.
+    pub total: f64,
+}
+
+/// Memory.
+#[derive(Debug, Clone, Serialize)]
+pub struct Bytes {
+    /// The matrix.
+    pub stored: usize,
+    /// The most the process held until the light was known.
+    pub peak_rss: Option<usize>,
+}
+
+/// The light of all elements, and what it took.
+struct Solved {
+    /// W/m².
+    radiosity: Vec<Rgb>,
+    /// From elements, W/m².
+    irradiance: Vec<Rgb>,
+    form_factor_time: Duration,
+    matrix_bytes: usize,
+    shots: Option<usize>,
+}
+
+/// Run the job; everything is written when this returns.
+pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
+    let start = Instant::now();
+    let stopped =
+        || Error::new(&job.scene, "stopped before the light was known", "a complete run", "run it again");
+    let scene = import_scene(&job.scene)?;
+    let places = job.points.as_deref().map(|file| points::read(file, scene.origin)).transpose()?;
+    let preparation = Preparation {
+        element_size: job.element_size,
+        division: Division::Authored,
+        resolution: EXACT,
+        local_solver: None,
+    };
+    let placed = unbaked(prepare(&scene, &preparation)?);
+    let sky = job.sky.as_ref().map(Sky::read).transpose()?;
+    let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
+    let nowhere = tempfile::tempdir().map_err(|error| {
+        let found = format!("cannot be used ({error})");
+        Error::new(std::env::temp_dir(), found, "a folder for temporary files", "set TMPDIR to one")
+    })?;
+    let store = Store::open(nowhere.path())?;
+    let coupler = Coupler { placed: &placed, store: &store, file: &job.scene, resolution: EXACT, monitor };
+    let direct = direct(&coupler, &lights)?.ok_or_else(stopped)?;
+    let each: Vec<Optics> =
+        (0..placed.instances.len()).map(|k| driven(&placed.optics_of(k), &direct.irradiance[k])).collect();
+    let mut solved = solve(job, &placed, &joined(&each), monitor)?.ok_or_else(stopped)?;
+    with_direct(&mut solved.irradiance, &direct.irradiance);
+    let (solve, solve_cpu, peak) = (start.elapsed().as_secs_f64(), cpu_seconds(), peak_rss());
+
+    let gathering = Instant::now();
+    let emission = whole_optics(&placed).emission;
+    let gather = Gather::new(&placed, &emission, &solved.radiosity, &lights, EXACT);
+    let outputs = match &places {
+        Some(places) => {
+            let lights =
+                points::light(&gather, &placed.world.elements, places, monitor).ok_or_else(stopped)?;
+            vec![write_points(&job.out.join(&scene.name), places, scene.origin, &lights, &solved.irradiance)?]
+        }
+        None => vec![],
+    };
+    Ok(ClassicReport {
+        notes: light_notes(&scene, job.light_units, job.sky.as_ref()),
+        scene: scene.name,
+        elements: placed.world.elements.len(),
+        seconds: Seconds {
+            form_factors: solved.form_factor_time.as_secs_f64(),
+            solve,
+            solve_cpu,
+            points: gathering.elapsed().as_secs_f64(),
+            points_cpu: cpu_since(solve_cpu),
+            total: start.elapsed().as_secs_f64(),
+        },
+        bytes: Bytes { stored: solved.matrix_bytes, peak_rss: peak },
+        shots: solved.shots,
+        outputs,
+    })
+}
+
+/// The light of all elements. None if the monitor was stopped.
+fn solve(job: &ClassicJob, placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Option<Solved>> {
+    let matrix = match job.way {
+        Way::Exact => Dense::exact(&placed.world, monitor),
+        Way::Rays(count) => Dense::by_rays(&placed.world.elements, count as usize, monitor),
+        Way::Progressive(unshot) => return Ok(progressive::solve(&placed.world, optics, unshot, monitor)),
+    };
+    let Some(matrix) = matrix else { return Ok(None) };
+    if matrix.is_endless(optics) {
+        let found = "closed, reflects everything and emits somewhere: its light grows without end";
+        let remedy = "lower a base colour below 1, or switch the emission off";
+        return Err(Error::new(&job.scene, found, "a reflectance below 1 or an opening somewhere", remedy));
+    }
+    let radiosity = matrix.solve(optics);
+    let irradiance = matrix.irradiance(&radiosity);
+    let (form_factor_time, matrix_bytes) = (matrix.time, matrix.bytes());
+    Ok(Some(Solved { irradiance, radiosity, form_factor_time, matrix_bytes, shots: None }))
+}
+
+/// The parts in their places, without any form factors.
+fn unbaked(prepared: Prepared) -> Placed {
+    let parts = prepared.parts.into_iter().map(without_light).collect();
+    Placed::new(parts, prepared.instances)
+}
+
+fn without_light(part: PreparedPart) -> Baked {
+    let key = geometry_manifest(&part, EXACT).key();
+    let nothing = || Origin::Computed("not at all".into());
+    let receivers = part.geometry.elements.len();
+    let local = LocalEquilibrium {
+        solver: part.solver,
+        radiosity: part.optics.emission.clone(),
+        factors: None,
+        answers: Answers::default(),
+    };
+    Baked {
+        part: BakedPart {
+            self_block: Rows::from_rows(part.geometry.clusters.nodes(), vec![vec![]; receivers]),
+            name: part.name,
+            geometry: part.geometry,
+            optics: part.optics,
+            tints: part.tints,
+            materials: part.materials,
+            local,
+        },
+        key,
+        form_factors: nothing(),
+        light: nothing(),
+        form_factor_time: Duration::ZERO,
+        light_time: Duration::ZERO,
+    }
+}
+
+/// Write the light of points; returns the path, for a person.
+fn write_points(
+    folder: &Path,
+    places: &[Place],
+    origin: DVec3,
+    lights: &[Option<PointLight>],
+    irradiance: &[Rgb],
+) -> Result<String> {
+    std::fs::create_dir_all(folder).map_err(|error| unusable(folder, &error))?;
+    let path = folder.join(POINTS);
+    points::write(&path, places, origin, lights, irradiance)?;
+    Ok(path.display().to_string())
+}

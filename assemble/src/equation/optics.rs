@@ -1,0 +1,17 @@
+//! Optics of all elements of a scene.
+
+use crate::placed::Placed;
+use equilux_formats::Optics;
+
+/// Optics of all elements, instance after instance.
+pub fn whole_optics(placed: &Placed) -> Optics {
+    joined(&(0..placed.instances.len()).map(|k| placed.optics_of(k)).collect::<Vec<_>>())
+}
+
+/// Optics of several instances, one after the other.
+pub fn joined(each: &[Optics]) -> Optics {
+    Optics {
+        reflectance: each.iter().flat_map(|o| o.reflectance.iter().copied()).collect(),
+        emission: each.iter().flat_map(|o| o.emission.iter().copied()).collect(),
+    }
+}

@@ -1,0 +1,141 @@
+//! The lit scene as a model that any glTF viewer shows. In go a [`SceneLight`] and the pictures' exposure; out comes a
+//! binary glTF 2.0 file: a node an instance, its elements as triangles that share no vertices, unlit (KHR_materials_unlit),
+//! each with the colour it has in the pictures (COLOR_0, linear).
+
+use crate::output_file;
+use crate::outputs::scene_light::SceneLight;
+use crate::picture::exposure::Exposure;
+use equilux_formats::{Element, Result, Rgb};
+use glam::{DVec3, Vec3};
+use gltf::binary::{Glb, Header};
+use serde_json::{Value, json};
+use std::io;
+use std::path::Path;
+
+/// A vertex: POSITION and COLOR_0, three f32 each.
+const VERTEX_BYTES: usize = 24;
+const FLOAT: u32 = 5126;
+const ARRAY_BUFFER: u32 = 34962;
+
+/// Writes the lit scene, at least one element, to `path`. Fails when it cannot be written there.
+pub fn write(path: &Path, light: &SceneLight, exposure: Exposure) -> Result<()> {
+    let (document, vertices) = model(light, exposure);
+    output_file::write(path, |out| {
+        let glb = Glb {
+            // The lengths are set as it is written.
+            header: Header { magic: *b"glTF", version: 2, length: 0 },
+            json: document.to_string().into_bytes().into(),
+            bin: Some(vertices.into()),
+        };
+        glb.to_writer(out).map_err(io::Error::other)
+    })
+}
+
+/// The JSON and the binary chunk.
+fn model(light: &SceneLight, exposure: Exposure) -> (Value, Vec<u8>) {
+    let (mut vertices, mut nodes, mut meshes, mut accessors) = (vec![], vec![], vec![], vec![]);
+    for instance in 0..light.world.instances() {
+        let range = light.world.elements_of(instance);
+        if range.is_empty() {
+            continue;
+        }
+        let elements = &light.world.elements[range.clone()];
+        let piece = Piece::new(elements, &light.radiosity[range], exposure);
+        nodes.push(json!({
+            "name": light.instance_names[instance], "mesh": meshes.len(), "translation": piece.origin.to_array(),
+        }));
+        meshes.push(json!({
+            "name": light.part_names[instance],
+            "primitives": [{
+                "attributes": { "POSITION": accessors.len(), "COLOR_0": accessors.len() + 1 }, "material": 0,
+            }],
+        }));
+        accessors.extend(piece.accessors(vertices.len()));
+        piece.append_to(&mut vertices);
+    }
+    let roots = under_origin(&mut nodes, light.origin);
+    (document(nodes, roots, meshes, accessors, vertices.len()), vertices)
+}
+
+/// Puts all `nodes` under one that moves them to `origin`, where that is elsewhere, and returns the roots of the scene.
+pub(crate) fn under_origin(nodes: &mut Vec<Value>, origin: DVec3) -> Vec<usize> {
+    let all: Vec<usize> = (0..nodes.len()).collect();
+    if origin == DVec3::ZERO {
+        return all;
+    }
+    nodes.push(json!({ "name": "origin", "translation": origin.to_array(), "children": all }));
+    vec![nodes.len() - 1]
+}
+
+fn document(
+    nodes: Vec<Value>,
+    roots: Vec<usize>,
+    meshes: Vec<Value>,
+    accessors: Vec<Value>,
+    bytes: usize,
+) -> Value {
+    json!({
+        "asset": { "version": "2.0", "generator": "Equilux" },
+        "extensionsUsed": ["KHR_materials_unlit"],
+        "scene": 0,
+        "scenes": [{ "nodes": roots }],
+        "nodes": nodes,
+        "meshes": meshes,
+        "materials": [{
+            "pbrMetallicRoughness": { "metallicFactor": 0.0, "roughnessFactor": 1.0 },
+            "extensions": { "KHR_materials_unlit": {} },
+        }],
+        "accessors": accessors,
+        "bufferViews": [{
+            "buffer": 0, "byteLength": bytes, "byteStride": VERTEX_BYTES, "target": ARRAY_BUFFER,
+        }],
+        "buffers": [{ "byteLength": bytes }],
+    })
+}
+
+/// The triangles of one instance.
+struct Piece {
+    /// Where its node stands, metres. Positions are relative to it, so that they keep their digits far from the scene's
+    /// origin; it is exact in f32 itself.
+    origin: Vec3,
+    /// Position and colour.
+    vertices: Vec<[Vec3; 2]>,
+}
+
+impl Piece {
+    fn new(elements: &[Element], radiosity: &[Rgb], exposure: Exposure) -> Self {
+        let corners = elements.iter().flat_map(|element| element.corners.as_slice());
+        let origin = corners.copied().fold(DVec3::INFINITY, DVec3::min).as_vec3();
+        let mut vertices = Vec::with_capacity(6 * elements.len());
+        for (element, &b) in elements.iter().zip(radiosity) {
+            let colour = DVec3::from(exposure.shown(b)).as_vec3();
+            vertices.extend(triangles(element).map(|p| [(p - origin.as_dvec3()).as_vec3(), colour]));
+        }
+        Self { origin, vertices }
+    }
+
+    /// The accessors of positions and colours, in a buffer where this piece starts at `start`.
+    fn accessors(&self, start: usize) -> [Value; 2] {
+        let positions = || self.vertices.iter().map(|vertex| vertex[0]);
+        let accessor = |offset: usize| {
+            json!({
+                "bufferView": 0, "byteOffset": offset, "componentType": FLOAT, "count": self.vertices.len(), "type": "VEC3",
+            })
+        };
+        let (mut position, colour) = (accessor(start), accessor(start + VERTEX_BYTES / 2));
+        position["min"] = json!(positions().fold(Vec3::INFINITY, Vec3::min).to_array());
+        position["max"] = json!(positions().fold(Vec3::NEG_INFINITY, Vec3::max).to_array());
+        [position, colour]
+    }
+
+    fn append_to(&self, bytes: &mut Vec<u8>) {
+        let numbers = self.vertices.iter().flatten().flat_map(|vector| vector.to_array());
+        bytes.extend(numbers.flat_map(f32::to_le_bytes));
+    }
+}
+
+/// The corners of an element's one or two triangles, counter-clockwise from the front.
+fn triangles(element: &Element) -> impl Iterator<Item = DVec3> {
+    let corners = element.corners.as_slice();
+    (2..corners.len()).flat_map(|i| [corners[0], corners[i - 1], corners[i]])
+}

@@ -1,0 +1,111 @@
+//! How far light is from a reference, in false colours: blue where ours is darker, red where it is brighter, white where the
+//! two agree.
+
+use super::interpolation::Interpolated;
+use crate::gather::points::{Place, located, read_light};
+use crate::picture::BACKGROUND;
+use crate::picture::canvas::Canvas;
+use crate::picture::exposure::luminance;
+use equilux_formats::{Element, Result, Rgb};
+use glam::DVec3;
+use image::RgbImage;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+use std::path::Path;
+
+/// The colours of ours darker, alike and brighter, linear RGB; far enough from each other for those who do not see red and green.
+const DARKER: Rgb = [0.02, 0.13, 0.52];
+const ALIKE: Rgb = [0.9, 0.9, 0.9];
+const BRIGHTER: Rgb = [0.64, 0.05, 0.01];
+
+/// The colours are full where this share of the places is further off.
+const FULL: f64 = 0.05;
+
+/// Light at places, to compare with.
+pub struct Reference {
+    places: Vec<Place>,
+    /// W/m².
+    irradiance: Vec<Rgb>,
+}
+
+impl Reference {
+    /// Read a table with the columns that [`crate::gather::points::read`] asks for, and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or `H_r`, `H_g`,
+    /// `H_b`, W/m². Fails if it cannot be read or has no such columns.
+    pub fn read(file: &Path, origin: DVec3) -> Result<Self> {
+        let (places, irradiance) = read_light(file, origin)?;
+        Ok(Self { places, irradiance })
+    }
+}
+
+/// Our light beside a reference's, at its places.
+pub struct Difference<'a> {
+    elements: &'a [Element],
+    /// By place and, scaled by the size of the scene, by normal, so that who looks another way is far away: luminance of our
+    /// irradiance minus the reference's, over its mean.
+    off: RTree<GeomWithData<[f64; 6], f64>>,
+    /// Largest coordinate of the places, metres.
+    size: f64,
+    /// Where the colours are full.
+    full: f64,
+}
+
+impl<'a> Difference<'a> {
+    /// Compare the light of elements.
+    pub fn new(reference: &Reference, elements: &'a [Element], light: &Interpolated) -> Self {
+        let size = reference.places.iter().map(|p| p.point.abs().max_element()).fold(0.0, f64::max);
+        let theirs: Vec<f64> = reference.irradiance.iter().copied().map(luminance).collect();
+        let mean = theirs.iter().sum::<f64>() / theirs.len() as f64;
+        let ours = located(elements, &reference.places);
+        let off = |((place, theirs), ours): ((&Place, f64), Option<(Element, usize)>)| {
+            let (at, element) = ours?;
+            let ours = luminance(light.at(element, at.centroid));
+            Some(GeomWithData::new(key(place, size), (ours - theirs) / mean))
+        };
+        let off: Vec<_> = reference.places.iter().zip(theirs).zip(ours).filter_map(off).collect();
+        let mut sizes: Vec<f64> = off.iter().map(|row| row.data.abs()).collect();
+        sizes.sort_by(f64::total_cmp);
+        let rank = (sizes.len() as f64 * (1.0 - FULL)) as usize;
+        let full = round_up(sizes.get(rank).copied().unwrap_or(0.0));
+        Self { elements, off: RTree::bulk_load(off), size, full }
+    }
+
+    fn at(&self, element: usize, point: DVec3) -> f64 {
+        let place = Place { point, normal: self.elements[element].normal };
+        self.off.nearest_neighbor(&key(&place, self.size)).map_or(0.0, |row| row.data)
+    }
+
+    /// What the canvas shows, in false colours.
+    pub fn picture(&self, canvas: &Canvas) -> RgbImage {
+        canvas.paint(BACKGROUND, |point, element| {
+            let off = self.at(element, canvas.view().onto(point, &self.elements[element])) / self.full;
+            let end = if off < 0.0 { DARKER } else { BRIGHTER };
+            let share = off.abs().min(1.0);
+            [0, 1, 2].map(|c| ALIKE[c] + share * (end[c] - ALIKE[c]))
+        })
+    }
+
+    /// What the colours mean.
+    pub fn legend(&self) -> String {
+        format!(
+            "error.png shows at each place of the reference our irradiance minus its: white for none, deep blue for {0} % of the mean darker, deep red for \
+             {0} % brighter",
+            100.0 * self.full
+        )
+    }
+}
+
+fn key(place: &Place, size: f64) -> [f64; 6] {
+    let (p, n) = (place.point, place.normal * size);
+    [p.x, p.y, p.z, n.x, n.y, n.z]
+}
+
+/// The next number of the form 1, 2 or 5 times a power of ten.
+fn round_up(number: f64) -> f64 {
+    if number <= 0.0 || !number.is_finite() {
+        return 1.0;
+    }
+    let decade = 10f64.powf(number.log10().floor());
+    let step = [1.0, 2.0, 5.0].into_iter().find(|step| step * decade >= number).unwrap_or(10.0);
+    // Written out and read again, so that the number printed is the number used.
+    format!("{:.0e}", step * decade).parse().unwrap_or(number)
+}

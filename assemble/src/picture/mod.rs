@@ -1,0 +1,80 @@
+//! Pictures of the light and of the elements. In go a [`Canvas`] and per-element light; out come images and PNG files.
+
+pub mod camera;
+pub mod canvas;
+pub mod difference;
+pub mod exposure;
+mod interpolation;
+pub mod shot;
+mod smooth;
+
+use crate::output_file;
+use crate::picture::canvas::Canvas;
+use crate::picture::exposure::Exposure;
+use equilux_formats::{Element, Result, Rgb};
+use glam::{DVec2, DVec3};
+use image::RgbImage;
+use image::codecs::png::PngEncoder;
+use image::imageops::{self, FilterType};
+use std::io;
+use std::path::Path;
+
+/// Behind everything, linear RGB: a dark grey that neither lit nor unlit surfaces have by chance.
+pub const BACKGROUND: Rgb = [0.02; 3];
+/// Wireframe: paper, surfaces and lines, linear RGB.
+const PAPER: Rgb = [1.0; 3];
+const SURFACE: Rgb = [0.85; 3];
+const LINE: Rgb = [0.01; 3];
+/// Between pictures that stand side by side, pixels.
+const GAP: u32 = 6;
+/// Half the width of a line between two elements, pixels.
+const HALF_LINE: f64 = 0.7;
+
+/// The lit scene, each element in one colour. `radiosity`: W/m², one row an element.
+pub fn shade(canvas: &Canvas, radiosity: &[Rgb], exposure: Exposure) -> RgbImage {
+    let colours: Vec<Rgb> = radiosity.iter().map(|&b| exposure.shown(b)).collect();
+    canvas.paint(BACKGROUND, |_, element| colours[element])
+}
+
+/// The edges of the elements as dark lines on light ground, hidden ones left out. `elements` are those that the canvas
+/// was traced with.
+pub fn wireframe(canvas: &Canvas, elements: &[Element]) -> RgbImage {
+    canvas.paint(PAPER, |point, element| {
+        let corners = elements[element].corners.as_slice();
+        if edge_distance(canvas, corners, point) < HALF_LINE { LINE } else { SURFACE }
+    })
+}
+
+/// Pictures of one size side by side, at half their size.
+pub fn strip(pictures: &[RgbImage]) -> RgbImage {
+    let small: Vec<RgbImage> = pictures
+        .iter()
+        .map(|picture| {
+            let [width, height] = [picture.width(), picture.height()].map(|side| (side / 2).max(1));
+            imageops::resize(picture, width, height, FilterType::Triangle)
+        })
+        .collect();
+    let (width, height) = small.first().map_or((1, 1), RgbImage::dimensions);
+    let mut strip =
+        RgbImage::from_pixel((width + GAP) * small.len() as u32 - GAP, height, image::Rgb([255; 3]));
+    for (place, picture) in small.iter().enumerate() {
+        imageops::replace(&mut strip, picture, i64::from(width + GAP) * place as i64, 0);
+    }
+    strip
+}
+
+/// Distance from an image point inside a convex polygon's picture to the nearest of its edges, pixels.
+fn edge_distance(canvas: &Canvas, corners: &[DVec3], point: DVec2) -> f64 {
+    let project = |i: usize| canvas.view().project(corners[i % corners.len()]);
+    let to_edge = |i| {
+        // In homogeneous coordinates the line through two points is their cross product, also behind the eye.
+        let line = project(i).cross(project(i + 1));
+        (line.dot(point.extend(1.0)) / line.truncate().length()).abs()
+    };
+    (0..corners.len()).map(to_edge).fold(f64::INFINITY, f64::min)
+}
+
+/// Writes `image` to `path` as PNG. Fails when it cannot be written there.
+pub fn write_png(path: &Path, image: &RgbImage) -> Result<()> {
+    output_file::write(path, |out| image.write_with_encoder(PngEncoder::new(out)).map_err(io::Error::other))
+}

@@ -1,0 +1,162 @@
+//! A picture that somebody asks for: from this camera, with flat or smooth light, and how far it is from a reference. In goes a
+//! [`Shot`] and the light of a scene; out come PNG files and what is to be said of them.
+
+use crate::picture::camera::View;
+use crate::picture::canvas::Canvas;
+use crate::picture::difference::{Difference, Reference};
+use crate::picture::exposure::Exposure;
+use crate::picture::interpolation::Interpolated;
+use crate::picture::smooth::corner_irradiance;
+use crate::picture::{BACKGROUND, shade, write_png};
+use crate::solve::Solved;
+use equilux_bake::visibility::rays::RayIndex;
+use equilux_formats::{Camera, Error, Result, Scene};
+use glam::DVec3;
+use std::path::{Path, PathBuf};
+
+/// What to draw.
+#[derive(Debug, Clone)]
+pub struct Shot {
+    /// From where.
+    pub eye: Eye,
+    /// Width and height, pixels; none for what suits the camera.
+    pub size: Option<[u32; 2]>,
+    /// How light is drawn.
+    pub shading: Shading,
+    /// Stops above what suits the scene: each makes the picture twice as bright.
+    pub stops: f64,
+    /// A table of light, to show in false colours how far ours is from it.
+    pub against: Option<PathBuf>,
+}
+
+impl Shot {
+    /// Fail where nothing could be seen, before any work.
+    pub fn check(&self, cameras: &[Camera], file: &Path) -> Result<()> {
+        match &self.eye {
+            Eye::Scene => Ok(()),
+            Eye::Camera(name) => camera(name, cameras, file).map(drop),
+            Eye::Points { from, to, .. } if from != to => Ok(()),
+            Eye::Points { .. } => {
+                let expected = "an eye in one place that looks at another";
+                Err(Error::new(file, "looks from a point at itself", expected, "move --from or --to"))
+            }
+        }
+    }
+}
+
+/// From where a picture is taken.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Eye {
+    /// The scene's first camera, or, without any, one that has all of it in the picture.
+    Scene,
+    /// The scene's camera of this name, or of this number from 1.
+    Camera(String),
+    /// From a point to another, metres, with a vertical field of view, radians.
+    Points {
+        /// Where the eye is.
+        from: DVec3,
+        /// What is in the middle of the picture.
+        to: DVec3,
+        /// Vertical field of view, radians.
+        field_of_view: f64,
+    },
+}
+
+/// How light is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum Shading {
+    /// Each element in one colour
+    Flat,
+    /// Irradiance interpolated between elements that see each other
+    Smooth,
+}
+
+/// What was drawn.
+pub struct Drawn {
+    /// The pictures.
+    pub paths: Vec<PathBuf>,
+    /// What a person should know of them.
+    pub notes: Vec<String>,
+}
+
+/// Draw a shot into `folder`. `against` is what `shot` names, read.
+pub fn draw(
+    shot: &Shot,
+    against: Option<&Reference>,
+    scene: &Scene,
+    solved: &Solved,
+    folder: &Path,
+) -> Result<Drawn> {
+    let equation = &solved.equation;
+    let elements = solved.elements();
+    let index = RayIndex::new(elements);
+    let view = view(shot, scene, || View::framing(elements, &index))?;
+    let canvas = Canvas::trace(view, &index);
+    let emission = &equation.optics.emission;
+    let Exposure(suits) = Exposure::choose(|| canvas.elements(), solved.radiosity(), emission);
+    let exposure = Exposure(suits * shot.stops.exp2());
+    let corners = match shot.shading {
+        Shading::Flat => None,
+        Shading::Smooth => Some(corner_irradiance(elements, &index, &solved.irradiance)),
+    };
+    let light = Interpolated { elements, corners: corners.as_deref(), flat: &solved.irradiance };
+    let picture = match shot.shading {
+        Shading::Flat => shade(&canvas, solved.radiosity(), exposure),
+        Shading::Smooth => canvas.paint(BACKGROUND, |point, element| {
+            let h = light.at(element, canvas.view().onto(point, &elements[element]));
+            let (e, rho) = (emission[element], equation.optics.reflectance[element]);
+            exposure.shown([0, 1, 2].map(|c| e[c] + rho[c] * h[c]))
+        }),
+    };
+    let path = folder.join("render.png");
+    write_png(&path, &picture)?;
+    let mut drawn = Drawn {
+        paths: vec![path],
+        notes: vec![format!(
+            "render.png shows radiance times {:.4} m² sr/W, {:+.1} stops from what suits the scene, in sRGB; above 0.8 it bends \
+             towards white",
+            exposure.0, shot.stops
+        )],
+    };
+    if let Some(reference) = against {
+        let difference = Difference::new(reference, elements, &light);
+        let path = folder.join("error.png");
+        write_png(&path, &difference.picture(&canvas))?;
+        drawn.paths.push(path);
+        drawn.notes.push(difference.legend());
+    }
+    Ok(drawn)
+}
+
+/// Fail where there is no such camera.
+fn view(shot: &Shot, scene: &Scene, framing: impl FnOnce() -> View) -> Result<View> {
+    let Scene { cameras, file, origin, .. } = scene;
+    let view = match &shot.eye {
+        Eye::Scene => cameras.first().map_or_else(framing, View::of_camera),
+        Eye::Camera(name) => View::of_camera(camera(name, cameras, file)?),
+        Eye::Points { from, to, field_of_view } => {
+            View::between(*from - *origin, *to - *origin, *field_of_view)
+        }
+    };
+    Ok(match shot.size {
+        Some([width, height]) => View { width, height, ..view },
+        None => view,
+    })
+}
+
+/// The camera of a name, or of a number from 1.
+fn camera<'a>(name: &str, cameras: &'a [Camera], file: &Path) -> Result<&'a Camera> {
+    let by_name = cameras.iter().find(|camera| camera.name == name);
+    let by_number = || name.parse::<usize>().ok().and_then(|number| cameras.get(number.checked_sub(1)?));
+    by_name.or_else(by_number).ok_or_else(|| {
+        let names: Vec<String> = cameras.iter().map(|camera| format!("`{}`", camera.name)).collect();
+        let found = if names.is_empty() { "no cameras at all".into() } else { names.join(", ") };
+        Error::new(
+            file,
+            format!("has no camera `{name}`, but {found}"),
+            "the name or number of a camera of the scene",
+            "choose one of them, or say where to look from with --from and --to",
+        )
+    })
+}

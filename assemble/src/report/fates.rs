@@ -1,0 +1,149 @@
+//! Whether each part and each block is computed, reused or left out, and why, before a run or after it. The reasons come from
+//! the manifests that make the keys.
+
+use crate::equation::coupling::Coupled;
+use crate::placed::Placed;
+use equilux_bake::cached::Origin;
+use equilux_bake::oven::Baked;
+use serde::Serialize;
+
+/// One distinct part, before a run or after it.
+#[derive(Debug, Clone, Serialize)]
+pub struct PartFate {
+    /// Its name.
+    pub name: String,
+    /// Its elements.
+    pub elements: usize,
+    /// In how many places it stands.
+    pub places: usize,
+    /// What becomes of its own form factors.
+    pub form_factors: Fate,
+    /// What became of its own light; none before the run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<Fate>,
+    /// Who solves its equilibrium.
+    pub local_solver: String,
+}
+
+/// A part in its place, before a run or after it.
+#[derive(Debug, Clone, Serialize)]
+pub struct InstanceFate {
+    /// Its name.
+    pub name: String,
+    /// Its part.
+    pub part: String,
+    /// What stands inside it, so that its own form factors are not those of the part.
+    pub intruders: Vec<String>,
+    /// What becomes of its own form factors with what stands inside; none if nothing does.
+    pub corrected: Option<Fate>,
+    /// What becomes of the form factors to all others.
+    pub coupling: Fate,
+}
+
+/// Whether something is computed, and why.
+#[derive(Debug, Clone, Serialize)]
+pub struct Fate {
+    /// `computed` or `reused`.
+    pub how: &'static str,
+    /// Why.
+    pub reason: String,
+}
+
+impl Fate {
+    /// What the origin says.
+    pub fn of(origin: &Origin) -> Self {
+        match origin {
+            Origin::Reused => Self { how: "reused", reason: "all inputs are unchanged".into() },
+            Origin::Unchanged(_) => Self { how: "reused", reason: origin.to_string() },
+            Origin::Computed(reason) => Self::computed(reason),
+        }
+    }
+
+    /// Computed for this reason.
+    pub fn computed(reason: &str) -> Self {
+        Self { how: "computed", reason: reason.into() }
+    }
+}
+
+/// So many instances that another does not see are named, more are counted.
+const NAMED: usize = 4;
+
+/// The sentences, parts first.
+pub fn explained(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
+    let parts =
+        placed.parts.iter().enumerate().map(|(number, baked)| part_line(&part(placed, number, baked)));
+    let blocks = (0..coupled.len()).flat_map(|k| blocks(placed, k, &coupled[k]));
+    parts.chain(blocks).collect()
+}
+
+fn part(placed: &Placed, number: usize, baked: &Baked) -> PartFate {
+    PartFate {
+        name: baked.part.name.clone(),
+        elements: baked.part.geometry.elements.len(),
+        places: placed.instances.iter().filter(|instance| instance.part.index() == number).count(),
+        form_factors: Fate::of(&baked.form_factors),
+        light: Some(Fate::of(&baked.light)),
+        local_solver: format!("{:?}", baked.part.local.solver),
+    }
+}
+
+fn blocks(placed: &Placed, k: usize, coupled: &Coupled) -> Vec<String> {
+    let name = |k: usize| placed.instances[k].name.clone();
+    let instance = InstanceFate {
+        name: name(k),
+        part: placed.part_of(k).part.name.clone(),
+        intruders: coupled.corrected.iter().flat_map(|own| &own.intruders).map(|&i| name(i)).collect(),
+        corrected: coupled.corrected.as_ref().map(|own| Fate::of(&own.origin)),
+        coupling: Fate::of(&coupled.origin),
+    };
+    let relit = placed.relit[k].as_ref();
+    let relit =
+        relit.map(|relit| format!("light of {}, repainted, {}", name(k), step(&Fate::of(&relit.origin))));
+    let coupling = format!("coupling of {} {}", name(k), step(&instance.coupling));
+    let seen = seen_instances(placed, coupled);
+    let unseen: Vec<String> = (0..seen.len()).filter(|&l| l != k && !seen[l]).map(name).collect();
+    corrected_line(&instance).into_iter().chain(relit).chain([coupling + &unseen_clause(&unseen)]).collect()
+}
+
+fn unseen_clause(unseen: &[String]) -> String {
+    let named = unseen.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    match unseen.len() {
+        0 => String::new(),
+        1..=NAMED => format!("; left out: {named}, of which it sees nothing"),
+        count => format!("; left out: {named} and {} more, of which it sees nothing", count - NAMED),
+    }
+}
+
+/// Which instances a block's receivers see anything of.
+pub fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
+    let mut seen = vec![false; placed.instances.len()];
+    for sender in coupled.coupling.senders_seen() {
+        seen[placed.world.instance_of_node(sender)] = true;
+    }
+    seen
+}
+
+/// What becomes of a part, in a line.
+pub fn part_line(part: &PartFate) -> String {
+    let places = if part.places == 1 { "1 place".into() } else { format!("{} places", part.places) };
+    let light = part.light.as_ref().map_or(String::new(), |light| format!("; light {}", step(light)));
+    format!(
+        "part {}: {} elements in {places}, solved by {}; form factors {}{light}",
+        part.name,
+        part.elements,
+        part.local_solver,
+        step(&part.form_factors)
+    )
+}
+
+/// What becomes of an instance's own form factors, if something stands inside it.
+pub fn corrected_line(instance: &InstanceFate) -> Option<String> {
+    let corrected = instance.corrected.as_ref()?;
+    let inside = instance.intruders.join(", ");
+    Some(format!("inside {} is {inside}: its own form factors {}", instance.name, step(corrected)))
+}
+
+/// What is done, and why.
+pub fn step(step: &Fate) -> String {
+    format!("{}: {}", step.how, step.reason)
+}

@@ -1,0 +1,108 @@
+//! The whole run: a scene is solved, its light is proved and written, and the run is reported.
+
+pub mod advice;
+pub mod job;
+pub mod plan;
+#[cfg(feature = "cli")]
+pub mod watch;
+
+use crate::equation::observer::Observer;
+use crate::exchange::listener::Unobserved;
+use crate::lightmap::atlas::Atlas;
+use crate::outputs::{Light, RESULT, Written, write_all};
+use crate::proof::prove;
+use crate::report::Report;
+use crate::report::fates::explained;
+use crate::report::light_notes::light_notes;
+use crate::report::process::{cpu_seconds, peak_rss};
+use crate::report::summary::{HIDDEN_SHELLS, Run, summary};
+use crate::report::unlit::unlit_notes;
+use crate::solve::solve_prepared;
+use crate::verify::{Classic, classic};
+use equilux_bake::batch::damage_notes;
+use equilux_bake::depfile;
+use equilux_bake::gltf_import::import_scene;
+use equilux_bake::monitor::Monitor;
+use equilux_bake::prepare::{Prepared, lost_digits_note, prepare};
+use equilux_formats::{Result, Scene, Store, Swept};
+use job::Job;
+use std::path::Path;
+use std::time::Instant;
+
+/// Run the job; everything is written when this returns.
+pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
+    run_observed(job, monitor, &Unobserved)
+}
+
+/// Like [`run`], reporting progress to `observer`.
+pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Result<Report> {
+    let start = Instant::now();
+    let Job { settings, outputs: requests, .. } = job;
+    let (scene, prepared) = opened(job)?;
+    let atlas = requests.lightmaps.map(|options| Atlas::new(&scene, options.texel_size)).transpose()?;
+    let (places, against) = job.tables(scene.origin)?;
+    let store = Store::open(&settings.cache)?;
+    let element_size = prepared.element_size.to_string();
+    let solved = solve_prepared(&scene, prepared, settings, &store, monitor, observer)?;
+    let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
+    let (equation, outcome) = (&solved.equation, &solved.outcome);
+    let (placed, systems) = (&equation.placed, equation.systems());
+    let proof = prove(placed, &systems, outcome, requests.exact_rows, monitor);
+    let peak = peak_rss();
+    let classic = if requests.verify { classic(placed, &equation.driven_optics(), monitor) } else { None };
+    observer.settled(outcome, &solved.irradiance);
+
+    let light = Light {
+        solved: &solved,
+        classic: classic.as_ref(),
+        atlas: atlas.as_ref(),
+        places: places.as_deref(),
+        against: against.as_ref(),
+    };
+    let Written { paths: outputs, notes, point_time, point_cpu } =
+        write_all(requests, &scene, &light, monitor)?;
+    if let Some(path) = &requests.depfile {
+        depfile::write(path, &requests.folder.join(&scene.name).join(RESULT), &scene.sources)?;
+    }
+    let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
+    let results =
+        Run { equation, systems: &systems, outcome, proof: proof.as_ref(), classic: classic.as_ref() };
+    let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&results) };
+    report.blocks.leave_out(HIDDEN_SHELLS, scene.hidden_shells);
+    report.bytes.peak_rss = peak;
+    report.form_factors_computed += equation.direct.computed;
+    if requests.explain {
+        report.explained = explained(placed, &equation.coupled);
+    }
+    (report.seconds.points, report.seconds.points_cpu) = (point_time.as_secs_f64(), point_cpu);
+    (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
+    report.seconds.total = start.elapsed().as_secs_f64();
+    let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
+    let lights = [
+        light_notes(&scene, settings.light_units, settings.sky.as_ref()),
+        unlit_notes(&scene, &equation.direct.unlit, placed, &systems),
+    ]
+    .concat();
+    report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
+    Ok(report)
+}
+
+/// The scene and its parts with elements. Fails where the job could not be done.
+fn opened(job: &Job) -> Result<(Scene, Prepared)> {
+    let mut scene = import_scene(&job.scene)?;
+    scene.sources.extend(job.beside().map(Path::to_path_buf));
+    let prepared = prepare(&scene, &job.settings.preparation)?;
+    scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
+    job.check(&scene)?;
+    Ok((scene, prepared))
+}
+
+fn unverified_note(job: &Job, classic: Option<&Classic>) -> Option<String> {
+    (job.outputs.verify && classic.is_none())
+        .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned())
+}
+
+fn dropped_note(swept: Option<Swept>) -> Option<String> {
+    let Swept { dropped, .. } = swept.filter(|swept| swept.dropped.files > 0)?;
+    Some(format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes))
+}

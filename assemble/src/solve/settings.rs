@@ -1,0 +1,49 @@
+//! Settings of a solution: elements and parts, form factors, lights, and the exchange.
+
+use crate::exchange::settings::{Goal, Method};
+use crate::gather::sky::Sky;
+use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::treecode::Resolution;
+use equilux_formats::LightUnits;
+use std::path::PathBuf;
+
+/// Settings of a solution. The default is that of the command line.
+#[derive(Debug, Clone)]
+pub struct SolveSettings {
+    /// The cache folder.
+    pub cache: PathBuf,
+    /// Elements, parts, accuracy of form factors, and local solvers.
+    pub preparation: Preparation,
+    /// The units of the intensities of the file's lights; none for those that each file suggests.
+    pub light_units: Option<LightUnits>,
+    /// Radiance from outside the scene; none for darkness.
+    pub sky: Option<Sky>,
+    /// How parts exchange light.
+    pub method: Method,
+    /// When the exchange ends.
+    pub goal: Goal,
+    /// Whether to start from the light of the last such run of the scene, and to keep this one's for the next.
+    pub warm: bool,
+}
+
+/// The default tolerance of form factors, a share of the mean light.
+const TOLERANCE: f64 = 0.01;
+
+impl Default for SolveSettings {
+    fn default() -> Self {
+        Self {
+            cache: ".equilux".into(),
+            preparation: Preparation {
+                element_size: None,
+                division: Division::Authored,
+                resolution: Resolution::for_tolerance(TOLERANCE),
+                local_solver: None,
+            },
+            light_units: None,
+            sky: None,
+            method: Method::Auto,
+            goal: Goal::default(),
+            warm: false,
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! Sums over a whole scene: means, differences and row sums.
+
+use crate::exchange::system::InstanceSystem;
+use equilux_bake::equilibrium::{added, subtract};
+use equilux_formats::{Element, Rgb};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Distance of row sums from one.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Defect {
+    /// The worst row.
+    pub max: f64,
+    /// The mean over all rows.
+    pub mean: f64,
+    /// By how much the largest sum exceeds one; 0 if none does.
+    pub excess: f64,
+}
+
+/// The mean over the scene's area, channel by channel.
+pub fn mean_over_area(elements: &[Element], values: &[Rgb]) -> Rgb {
+    let (mut sum, mut total) = ([0.0; 3], 0.0);
+    for (element, value) in elements.iter().zip(values) {
+        sum = added(sum, value.map(|v| v * element.area));
+        total += element.area;
+    }
+    sum.map(|sum| sum / total)
+}
+
+/// √(Σ w d² / Σ w) over Σ w u / Σ w, the worst channel: the root mean square of differences d in units of the mean of u,
+/// from rows (d, u, w). A channel without differences has none, whatever its mean.
+pub fn weighted_rms_over_mean(rows: impl Iterator<Item = (Rgb, Rgb, f64)>) -> f64 {
+    let (mut squares, mut sums, mut weights) = ([0.0; 3], [0.0; 3], 0.0);
+    for (difference, unit, weight) in rows {
+        for c in 0..3 {
+            squares[c] += weight * difference[c] * difference[c];
+            sums[c] += weight * unit[c];
+        }
+        weights += weight;
+    }
+    let of =
+        |c: usize| if squares[c] == 0.0 { 0.0 } else { (squares[c] / weights).sqrt() / (sums[c] / weights) };
+    (0..3).map(of).fold(0.0, f64::max)
+}
+
+/// The root of the mean square of `values` over the mean of `unit`, both over the scene's area; the worst channel.
+pub fn rms_over_mean(elements: &[Element], values: &[Rgb], unit: &[Rgb]) -> f64 {
+    let rows = elements.iter().zip(values).zip(unit);
+    weighted_rms_over_mean(rows.map(|((element, &value), &unit)| (value, unit, element.area)))
+}
+
+/// How far the rows of the whole matrix are from summing to one.
+pub fn row_sum_defect(systems: &[InstanceSystem]) -> Defect {
+    let over = systems
+        .par_iter()
+        .map(|system| row_sums(system).map(|sum| sum - 1.0).collect())
+        .collect::<Vec<Vec<f64>>>();
+    let over = over.concat();
+    let max = over.iter().fold(0.0, |max: f64, over| max.max(over.abs()));
+    let mean = over.iter().map(|over| over.abs()).sum::<f64>() / over.len().max(1) as f64;
+    Defect { max, mean, excess: over.into_iter().fold(0.0, f64::max) }
+}
+
+/// Σ_j F_ij of every receiver of an instance, over all senders of the scene.
+pub fn row_sums<'a>(system: &'a InstanceSystem<'a>) -> impl Iterator<Item = f64> + 'a {
+    (0..system.self_block.receivers()).map(|i| system.self_block.row_sum(i) + system.coupling.row_sum(i))
+}
+
+/// The largest difference between two radiosities, element by element, relative to the larger of the two. A
+/// difference below one rounding (2⁻⁵³) of the brightest radiosity is none: form factors, which are at most 1, are
+/// themselves no better than that.
+pub fn largest_difference(a: &[Rgb], b: &[Rgb]) -> f64 {
+    let brightest = b.iter().flatten().fold(0.0f64, |most, v| most.max(v.abs()));
+    let rounding = brightest * f64::EPSILON / 2.0;
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    pairs
+        .map(|(&a, &b)| if (a - b).abs() <= rounding { 0.0 } else { (a - b).abs() / a.abs().max(b.abs()) })
+        .fold(0.0, f64::max)
+}
+
+/// The root mean square difference over the mean of the second, weighted by area; the worst channel.
+pub fn mean_difference(elements: &[Element], a: &[Rgb], b: &[Rgb]) -> f64 {
+    let differences: Vec<Rgb> = a.iter().zip(b).map(|(&a, &b)| subtract(a, b)).collect();
+    rms_over_mean(elements, &differences, b)
+}
