@@ -16,7 +16,7 @@ use crate::gather::sky::Sky;
 use crate::outputs::{POINTS, unusable};
 use crate::placed::Placed;
 use crate::report::light_notes::light_notes;
-use crate::report::process::{cpu_seconds, peak_rss};
+use crate::report::process::{cpu_seconds, cpu_since, peak_rss};
 use dense::Dense;
 use equilux_bake::cached::Origin;
 use equilux_bake::elements::ElementSize;
@@ -93,6 +93,8 @@ pub struct Seconds {
     pub solve_cpu: Option<f64>,
     /// Wall time to gather light at points.
     pub points: f64,
+    /// The same in processor time, where the system tells.
+    pub points_cpu: Option<f64>,
     /// Wall time of the run.
     pub total: f64,
 }
@@ -166,6 +168,7 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
             solve,
             solve_cpu,
             points: gathering.elapsed().as_secs_f64(),
+            points_cpu: cpu_since(solve_cpu),
             total: start.elapsed().as_secs_f64(),
         },
         bytes: Bytes { stored: solved.matrix_bytes, peak_rss: peak },

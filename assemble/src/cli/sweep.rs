@@ -1,7 +1,7 @@
 //! The command line of `assemble sweep`.
 
 use crate::cli::values;
-use crate::sweep::findings::{percent, seconds};
+use crate::sweep::numbers::{percent, seconds};
 use crate::sweep::summary::Summary;
 use crate::sweep::{Options, sweep};
 use clap::Args;
@@ -69,10 +69,10 @@ impl Arguments {
             let error = percent(target.error);
             text += &match target.gathered.map(|row| &summary.runs[row]) {
                 Some(row) => {
-                    let time = seconds(row.seconds_solve + row.seconds_points);
-                    format!("  {error} at points: {time}  {}\n", row.command)
+                    let time = seconds(row.gathered().0);
+                    format!("  error at points {error}: {time} of {}  {}\n", row.clock(), row.command)
                 }
-                None => format!("  {error} at points: nothing that was tried is so good\n"),
+                None => format!("  error at points {error}: not reached by any setting tried\n"),
             };
         }
         summary.findings.iter().for_each(|finding| text += &format!("  {finding}\n"));

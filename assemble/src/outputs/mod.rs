@@ -16,6 +16,7 @@ use crate::picture::difference::Reference;
 use crate::picture::exposure::Exposure;
 use crate::picture::shot;
 use crate::picture::{shade, strip, wireframe, write_png};
+use crate::report::process::{cpu_seconds, cpu_since};
 use crate::solve::Solved;
 use crate::statistics::mean_over_area;
 use crate::verify::Classic;
@@ -59,6 +60,8 @@ pub struct Written {
     pub notes: Vec<String>,
     /// What the light of points took.
     pub point_time: Duration,
+    /// The same in processor time, seconds, where the system tells.
+    pub point_cpu: Option<f64>,
 }
 
 /// The file name of the light of points.
@@ -122,9 +125,9 @@ pub fn write_all(
     };
     let mut written = write_tables(requests, &folder, scene.origin, light, exposure)?;
     let lightmaps = write_lightmaps(requests, &folder, scene, light, exposure, monitor)?;
-    let start = Instant::now();
+    let (start, cpu) = (Instant::now(), cpu_seconds());
     let points = write_points(&folder, scene.origin, light, monitor)?;
-    let point_time = start.elapsed();
+    let (point_time, point_cpu) = (start.elapsed(), cpu_since(cpu));
     let mut notes = Vec::new();
     if let Some(shot) = &requests.shot {
         let drawn = shot::draw(shot, light.against, scene, light.solved, &folder)?;
@@ -136,7 +139,7 @@ pub fn write_all(
         notes.extend(saved.notes);
     }
     lines.extend(written.iter().map(|path| path.display().to_string()));
-    Ok(Written { paths: lines, notes, point_time })
+    Ok(Written { paths: lines, notes, point_time, point_cpu })
 }
 
 fn write_points(folder: &Path, origin: DVec3, light: &Light, monitor: &Monitor) -> Result<Option<Saved>> {

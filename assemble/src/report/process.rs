@@ -36,3 +36,8 @@ pub fn peak_rss() -> Option<usize> {
 pub fn cpu_seconds() -> Option<f64> {
     None
 }
+
+/// Processor time since [`cpu_seconds`] was `start`, seconds; none where the system does not report it.
+pub fn cpu_since(start: Option<f64>) -> Option<f64> {
+    cpu_seconds().zip(start).map(|(now, start)| now - start)
+}

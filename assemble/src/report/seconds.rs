@@ -37,6 +37,8 @@ pub struct Seconds {
     pub exchange_overhead: f64,
     /// The light of points that were asked for; wall time.
     pub points: f64,
+    /// The same in processor time, where the system reports it.
+    pub points_cpu: Option<f64>,
     /// Wall time from the scene's file until the light of all elements is known: everything but proofs and outputs.
     pub solve: f64,
     /// The same in processor time, where the system tells.
@@ -79,6 +81,7 @@ pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Secon
         t3: longest(&own).max(longest(&coupling)) + longest(&solve) + longest(&transfer),
         exchange_overhead: times.overhead.total().as_secs_f64(),
         points: 0.0,
+        points_cpu: None,
         solve: 0.0,
         solve_cpu: None,
         total: 0.0,

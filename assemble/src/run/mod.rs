@@ -59,7 +59,8 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         places: places.as_deref(),
         against: against.as_ref(),
     };
-    let Written { paths: outputs, notes, point_time } = write_all(requests, &scene, &light, monitor)?;
+    let Written { paths: outputs, notes, point_time, point_cpu } =
+        write_all(requests, &scene, &light, monitor)?;
     if let Some(path) = &requests.depfile {
         depfile::write(path, &requests.folder.join(&scene.name).join(RESULT), &scene.sources)?;
     }
@@ -73,7 +74,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     if requests.explain {
         report.explained = explained(placed, &equation.coupled);
     }
-    report.seconds.points = point_time.as_secs_f64();
+    (report.seconds.points, report.seconds.points_cpu) = (point_time.as_secs_f64(), point_cpu);
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();

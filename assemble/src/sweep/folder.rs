@@ -1,10 +1,9 @@
 //! The folder of a sweep: one sweep at a time, and what it reads and writes there.
 
-use super::Summary;
 use super::page::page;
 use super::points::surface_points;
-use super::reference::points_csv;
-use super::table::csv;
+use super::summary::Summary;
+use super::table::{csv, points_csv};
 use crate::output_file;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::world::World;
@@ -57,8 +56,8 @@ pub fn own_points(scene: &Scene, folder: &Path) -> Result<PathBuf> {
     let path = folder.join("points.csv");
     let mut points = surface_points(&world.elements, POINTS);
     points.iter_mut().for_each(|place| place.point += scene.origin);
-    let text = points_csv(&points);
-    output_file::write(&path, |out| out.write_all(text.as_bytes()))?;
+    let table = points_csv(&points);
+    output_file::write(&path, |out| out.write_all(&table))?;
     Ok(path)
 }
 

@@ -4,6 +4,7 @@
 use super::run::{Facts, PointLight, Run};
 use super::setting::Setting;
 use crate::output_file;
+use csv::StringRecord;
 use equilux_bake::monitor::Monitor;
 use equilux_formats::{Content, Error, Result};
 use std::fs::{self, File};
@@ -129,9 +130,12 @@ impl Runner<'_> {
         let facts = serde_json::from_slice(&text).map_err(|error| wrong(&printed, error.to_string()))?;
         let scene = self.scene.file_stem().unwrap_or_default();
         let points = place.join("out").join(scene).join("points.csv");
-        let table = fs::read_to_string(&points).map_err(|error| wrong(&points, error.to_string()))?;
-        let light: Option<Vec<_>> = table.lines().skip(1).map(point_light).collect();
-        let light = light.ok_or_else(|| wrong(&points, "a line is no point with its light".into()))?;
+        let unreadable = |error: csv::Error| wrong(&points, error.to_string());
+        let mut table = csv::Reader::from_path(&points).map_err(unreadable)?;
+        let lines: Vec<StringRecord> =
+            table.records().collect::<std::result::Result<_, _>>().map_err(unreadable)?;
+        let light: Option<Vec<_>> = lines.iter().map(point_light).collect();
+        let light = light.ok_or_else(|| wrong(&points, "a line that is no point with its light".into()))?;
         if light.iter().all(Option::is_none) {
             let found = format!("none of its points lies on a surface of {}", self.scene.display());
             let remedy = "give the light of this very scene with --truth FILE.csv";
@@ -147,16 +151,15 @@ impl Runner<'_> {
     }
 }
 
-/// A line of points.csv: place (3), normal (3), H gathered (3), number of the element, H of the element (3).
-/// Without light where the point lies on no surface; none at all if the line is something else.
-fn point_light(line: &str) -> Option<Option<PointLight>> {
-    let fields: Vec<&str> = line.split(',').collect();
+/// The light on a line of points.csv, whose columns are place (3), normal (3), irradiance gathered (3), number of the
+/// element, irradiance of the element (3). `Some(None)` where the point lies on no surface; none if the line is malformed.
+fn point_light(line: &StringRecord) -> Option<Option<PointLight>> {
     let rgb = |first: usize| -> Option<[f64; 3]> {
         let numbers: Option<Vec<f64>> =
-            (first..first + 3).map(|place| fields.get(place)?.parse().ok()).collect();
+            (first..first + 3).map(|place| line.get(place)?.parse().ok()).collect();
         numbers?.try_into().ok()
     };
-    if fields.get(9)?.is_empty() {
+    if line.get(9)?.is_empty() {
         return Some(None);
     }
     Some(Some(PointLight { gathered: rgb(6)?, element: rgb(10)? }))

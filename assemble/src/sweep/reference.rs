@@ -1,7 +1,7 @@
 //! What runs are compared with: irradiance at points, from a file or from the finest run of the sweep.
 
 use super::run::Run;
-use crate::gather::points::{Place, places};
+use crate::gather::points::places;
 use crate::table::Table;
 use equilux_formats::{Result, Rgb};
 use glam::DVec3;
@@ -77,14 +77,4 @@ impl Reference {
     pub fn resolves(&self) -> f64 {
         self.noise_share() * (2.0 / self.areas.len() as f64).powf(0.25)
     }
-}
-
-/// Points as a file that `assemble --points` reads.
-pub fn points_csv(points: &[Place]) -> String {
-    let line = |place: &Place| {
-        let DVec3 { x, y, z } = place.point;
-        let n = place.normal;
-        format!("{x},{y},{z},{},{},{}\n", n.x, n.y, n.z)
-    };
-    std::iter::once("x,y,z,nx,ny,nz\n".to_owned()).chain(points.iter().map(line)).collect()
 }

@@ -95,5 +95,14 @@ impl Setting {
     }
 }
 
+/// A setting that was not run.
+#[derive(Debug, Clone)]
+pub struct Skipped {
+    /// The setting.
+    pub setting: Setting,
+    /// Why not.
+    pub why: String,
+}
+
 /// What `--tolerance` is unless told.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;

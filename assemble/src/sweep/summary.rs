@@ -1,17 +1,14 @@
 //! What a sweep found, as `sweep.json` has it: one row a run with its costs and errors, which of them are on the front, and
 //! what follows from comparing them.
 
-use super::Skipped;
-use super::errors::Errors;
 use super::findings::findings;
 use super::front::front;
 use super::reference::Reference;
+use super::row::{Compared, Row};
 use super::run::{Round, Run};
 use super::separation::{Separated, separated};
-use super::setting::{Kind, Setting};
-use crate::report::seconds::Seconds;
+use super::setting::{Kind, Setting, Skipped};
 use serde::Serialize;
-use std::path::Path;
 
 /// Everything.
 #[derive(Debug, Clone, Serialize)]
@@ -38,62 +35,6 @@ pub struct Summary {
     pub reused: usize,
     /// Wall time of this sweep.
     pub seconds: f64,
-}
-
-/// What runs are compared with.
-#[derive(Debug, Clone, Serialize)]
-pub struct Compared {
-    /// For a person.
-    pub what: String,
-    /// Number of points.
-    pub points: usize,
-    /// Its own error, as a share of the mean; none if unknown.
-    pub own_error: Option<f64>,
-    /// Errors below this cannot be told from none.
-    pub resolves: f64,
-    /// The setting of the run it comes from, if it does.
-    #[serde(skip)]
-    pub setting: Option<Setting>,
-}
-
-/// A run with its errors.
-#[derive(Debug, Clone, Serialize)]
-pub struct Row {
-    /// For a person.
-    pub label: String,
-    /// The command line that gives it.
-    pub command: String,
-    /// What was asked for.
-    #[serde(flatten)]
-    pub setting: Setting,
-    /// Number of elements.
-    pub elements: usize,
-    /// Wall time from the file to the light of all elements.
-    pub seconds_solve: f64,
-    /// The same in processor time, if the system tells.
-    pub seconds_solve_cpu: Option<f64>,
-    /// Wall time to gather light at the points.
-    pub seconds_points: f64,
-    /// Wall time of the process.
-    pub seconds_process: f64,
-    /// Form factors as they are kept.
-    pub bytes_stored: usize,
-    /// The most the process held.
-    pub bytes_peak: Option<usize>,
-    /// Rounds of the exchange.
-    pub rounds: usize,
-    /// Its errors.
-    pub errors: Errors,
-    /// On the front of error at points against seconds to solve and gather.
-    pub on_gathered_front: bool,
-    /// On the front of the error of elements against seconds to solve.
-    pub on_elements_front: bool,
-    /// Whether it is what a person gets without options.
-    pub is_default: bool,
-    /// Whether the reference comes from it.
-    pub is_reference: bool,
-    /// The paper's steps.
-    pub steps: Seconds,
 }
 
 /// The quickest settings for an error.
@@ -139,36 +80,6 @@ pub struct Found<'a> {
     pub commands: &'a dyn Fn(&Setting) -> String,
 }
 
-impl Compared {
-    /// With a file.
-    pub fn with_file(path: Option<&Path>, truth: &Reference) -> Self {
-        let name = path.map(|path| path.display().to_string()).unwrap_or_default();
-        Self {
-            what: name,
-            points: truth.areas.len(),
-            own_error: Some(truth.noise_share()),
-            resolves: truth.resolves(),
-            setting: None,
-        }
-    }
-
-    /// With the finest run, whose own error is told by the next coarser one.
-    pub fn with_run(finest: &Run, coarser: Option<&Run>, reference: &Reference) -> Self {
-        let own = coarser.map(|run| Errors::of(&run.light, reference).gathered);
-        Self {
-            what: format!(
-                "the light that {} elements gather at the points ({})",
-                finest.facts.elements,
-                finest.setting.label()
-            ),
-            points: finest.light.len(),
-            own_error: own,
-            resolves: own.unwrap_or(0.0),
-            setting: Some(finest.setting.clone()),
-        }
-    }
-}
-
 impl Summary {
     /// Of all that was found.
     pub fn of(found: &Found, reference: &Reference, compared: Compared) -> Self {
@@ -176,7 +87,7 @@ impl Summary {
             .runs
             .iter()
             .filter(|run| !matches!(run.setting.kind, Kind::Verified { .. }))
-            .map(|run| row(run, found.size, reference, &compared))
+            .map(|run| Row::of(run, found.size, reference, &compared))
             .collect();
         for (row, on) in on_front(&runs, Row::gathered).into_iter().enumerate() {
             runs[row].on_gathered_front = on;
@@ -206,60 +117,19 @@ impl Summary {
     }
 }
 
-impl Row {
-    /// Seconds to solve and gather, and the error at the points.
-    pub fn gathered(&self) -> Option<(f64, f64)> {
-        Some((self.seconds_solve + self.seconds_points, self.errors.gathered))
-    }
-
-    /// Seconds to solve, and the error of flat elements.
-    pub fn flat(&self) -> Option<(f64, f64)> {
-        Some((self.seconds_solve, self.errors.elements))
-    }
-
-    /// Whether it competes with the others: the reference would win against itself.
-    pub fn competes(&self) -> bool {
-        self.setting.is_ours() && !self.is_reference
-    }
-}
-
-fn row(run: &Run, size: f64, reference: &Reference, compared: &Compared) -> Row {
-    let facts = &run.facts;
-    Row {
-        label: run.setting.label(),
-        command: run.command.clone(),
-        setting: run.setting.clone(),
-        elements: facts.elements,
-        seconds_solve: facts.seconds.solve,
-        seconds_solve_cpu: facts.seconds.solve_cpu,
-        seconds_points: facts.seconds.points,
-        seconds_process: run.wall,
-        bytes_stored: facts.bytes.stored,
-        bytes_peak: facts.bytes.peak_rss,
-        rounds: facts.rounds.len(),
-        errors: Errors::of(&run.light, reference),
-        on_gathered_front: false,
-        on_elements_front: false,
-        is_default: run.setting.is_default(size),
-        is_reference: compared.setting.as_ref() == Some(&run.setting),
-        steps: facts.seconds.clone(),
-    }
-}
-
 /// Which of our rows are on the front of this cost and error.
-fn on_front(rows: &[Row], of: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<bool> {
+fn on_front(rows: &[Row], of: impl Fn(&Row) -> (f64, f64)) -> Vec<bool> {
     let none = (f64::NAN, f64::NAN);
     let choices: Vec<(f64, f64)> =
-        rows.iter().map(|row| of(row).filter(|_| row.competes()).unwrap_or(none)).collect();
+        rows.iter().map(|row| if row.competes() { of(row) } else { none }).collect();
     let chosen = front(&choices);
     (0..rows.len()).map(|row| chosen.contains(&row)).collect()
 }
 
 /// The quickest of our rows that errs no more.
-fn quickest(rows: &[Row], error: f64, of: impl Fn(&Row) -> Option<(f64, f64)>) -> Option<usize> {
-    let good = |&row: &usize| rows[row].competes() && of(&rows[row]).is_some_and(|(_, e)| e <= error);
-    let seconds = |row: usize| of(&rows[row]).map_or(f64::INFINITY, |(seconds, _)| seconds);
-    (0..rows.len()).filter(good).min_by(|&a, &b| seconds(a).total_cmp(&seconds(b)))
+fn quickest(rows: &[Row], error: f64, of: impl Fn(&Row) -> (f64, f64)) -> Option<usize> {
+    let good = |&row: &usize| rows[row].competes() && of(&rows[row]).1 <= error;
+    (0..rows.len()).filter(good).min_by(|&a, &b| of(&rows[a]).0.total_cmp(&of(&rows[b]).0))
 }
 
 fn exchanges(runs: &[Run]) -> Vec<Exchange> {

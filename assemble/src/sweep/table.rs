@@ -1,10 +1,12 @@
-//! `sweep.csv`: one line a run, with what it costs and how far it is off.
+//! The tables that a sweep writes: `sweep.csv`, one line a run with its cost and errors, and the points at which runs
+//! report their light.
 
+use super::row::Row;
 use super::setting::Kind;
-use super::summary::Row;
+use crate::gather::points::Place;
 
 /// The first line: seconds are wall time unless `cpu`, errors shares of the mean, and what is not known is empty.
-pub const HEADER: [&str; 24] = [
+pub const HEADER: [&str; 25] = [
     "method",
     "element_size_m",
     "tolerance",
@@ -15,6 +17,7 @@ pub const HEADER: [&str; 24] = [
     "seconds_solve",
     "seconds_solve_cpu",
     "seconds_points",
+    "seconds_points_cpu",
     "seconds_process",
     "bytes_stored",
     "bytes_peak",
@@ -33,10 +36,22 @@ pub const HEADER: [&str; 24] = [
 
 /// The table.
 pub fn csv(rows: &[Row]) -> Vec<u8> {
+    csv_bytes(std::iter::once(HEADER.map(str::to_owned)).chain(rows.iter().map(line)))
+}
+
+/// The points as a table that `assemble --points` reads.
+pub fn points_csv(points: &[Place]) -> Vec<u8> {
+    let line =
+        |place: &Place| [place.point, place.normal].map(|v| v.to_array().map(|x| x.to_string())).concat();
+    let header = ["x", "y", "z", "nx", "ny", "nz"].map(str::to_owned).to_vec();
+    csv_bytes(std::iter::once(header).chain(points.iter().map(line)))
+}
+
+/// Lines of equally many fields as comma-separated values.
+fn csv_bytes(lines: impl Iterator<Item = impl IntoIterator<Item = String>>) -> Vec<u8> {
     let mut table = csv::Writer::from_writer(vec![]);
-    let lines = std::iter::once(HEADER.map(str::to_owned)).chain(rows.iter().map(line));
-    lines.for_each(|line| table.write_record(line).expect("a vector takes everything"));
-    table.into_inner().expect("a vector takes everything")
+    lines.for_each(|line| table.write_record(line).expect("a vector takes every line of equal length"));
+    table.into_inner().expect("a vector takes every byte")
 }
 
 fn line(row: &Row) -> [String; HEADER.len()] {
@@ -58,6 +73,7 @@ fn line(row: &Row) -> [String; HEADER.len()] {
         row.seconds_solve.to_string(),
         number(row.seconds_solve_cpu),
         row.seconds_points.to_string(),
+        number(row.seconds_points_cpu),
         row.seconds_process.to_string(),
         row.bytes_stored.to_string(),
         number(row.bytes_peak.map(|bytes| bytes as f64)),

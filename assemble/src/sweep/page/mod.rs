@@ -1,11 +1,15 @@
-//! `report.html`: what a sweep found, for people. One file that asks for nothing outside it.
+//! `report.html`: the summary of a sweep for people. One file that loads nothing from outside it. A section without
+//! content is left out.
 
+mod axis;
 mod chart;
+mod mark;
 mod plots;
 mod tables;
 
-use super::findings::{percent, seconds};
-use super::summary::{Row, Summary};
+use super::numbers::{percent, seconds};
+use super::row::Row;
+use super::summary::Summary;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 /// The page.
@@ -22,50 +26,48 @@ pub fn page(summary: &Summary) -> String {
             }
             body {
                 h1 { (title) }
-                (said_first(summary))
-                (body(summary))
+                (overview(summary))
+                (results(summary))
+                (explanations(summary))
+                (remarks(summary))
             }
         }
     }
     .into_string()
 }
 
-fn said_first(summary: &Summary) -> Markup {
+fn overview(summary: &Summary) -> Markup {
     let compared = &summary.reference;
+    let runs = summary.runs.len() + summary.exchanges.len();
     html! {
         p.lead { (cheapest_sentence(summary)) }
         p {
-            "Each of the " (summary.runs.len() + summary.exchanges.len()) " runs was a process of its own that began with an empty cache. "
-            "Their light is compared at " (compared.points) " points with " (compared.what) ". "
-            "An error is the root of the mean square over area, divided by the mean, of the worst colour; "
+            "Each of the " (runs) " runs was a process of its own with an empty cache. "
+            "Its light is compared with the reference, " (compared.what) ", at " (compared.points) " points. "
+            "An error is the root mean square difference over area, divided by the mean, of the worst colour channel. "
             @match compared.own_error {
                 Some(own) if compared.setting.is_some() => {
-                    "the reference itself may err by about " (percent(own)) ", which is how much the next coarser exact run differs from it."
+                    "The reference itself may be off by about " (percent(own)) ", its difference from the next coarser exact run."
                 }
                 Some(own) => {
-                    "the noise of the reference, " (percent(own)) ", is taken out of it, which leaves chance below " (percent(compared.resolves)) "."
+                    "The noise of the reference, " (percent(own)) ", is subtracted; errors below " (percent(compared.resolves)) " cannot be told from zero."
                 }
-                None => "how much the reference itself errs is unknown, for there is no coarser run to compare it with."
+                None => "The error of the reference itself is unknown: there is no coarser run to compare it with."
             }
         }
-        (tables::cheapest(summary))
+        @if let Some(table) = tables::cheapest(summary) { (table) }
     }
 }
 
-/// `1 % takes 0.4 s …`
+/// The time that the target errors take, and what the default settings give.
 fn cheapest_sentence(summary: &Summary) -> String {
-    let row = |number: usize| &summary.runs[number];
-    let known = summary.cheapest.iter().filter_map(|c| Some((c.error, row(c.gathered?))));
-    let parts: Vec<String> = known
-        .map(|(error, row)| {
-            let elements = row.elements;
-            format!("{} takes {} ({elements} elements)", percent(error), time_of(row))
-        })
-        .collect();
+    let known = summary.cheapest.iter().filter_map(|c| Some((c.error, &summary.runs[c.gathered?])));
+    let parts: Vec<String> =
+        known.map(|(error, row)| format!("{} takes {}", percent(error), time_of(row))).collect();
     let default = summary.runs.iter().find(|row| row.is_default);
     let default = default.map_or(String::new(), |row| {
         format!(
-            " The default, elements of {} m, takes {} and errs by {} at points, flat elements by {}.",
+            " The default settings, elements of {} m, take {} with an error of {} at points; one value an element has an error of {}.",
             summary.default_element_size,
             time_of(row),
             percent(row.errors.gathered),
@@ -74,49 +76,87 @@ fn cheapest_sentence(summary: &Summary) -> String {
     });
     match parts.as_slice() {
         [] => format!("No run came within 5 % of the reference.{default}"),
-        parts => format!(
-            "Light that is gathered at points as lightmaps do: an error of {}.{default}",
-            parts.join(", of ")
-        ),
+        parts => {
+            let clock = summary.runs.first().map_or("time", Row::clock);
+            format!("Light at points, in {clock}: an error of {}.{default}", parts.join(", of "))
+        }
     }
 }
 
 fn time_of(row: &Row) -> String {
-    seconds(row.seconds_solve + row.seconds_points)
+    seconds(row.gathered().0)
 }
 
-fn body(summary: &Summary) -> Markup {
+/// A section, unless it has no content.
+fn section(title: &str, text: &str, content: Option<Markup>) -> Markup {
     html! {
-        h2 { "Error against seconds" }
-        p.quiet { "Lines join runs that differ in element size alone. Point at a mark to see its command. Both axes are logarithmic: down and left is better." }
-        div.charts { @for chart in plots::against_seconds(summary) { (chart) } }
-        h2 { "The front" }
-        p { "No other setting of Equilux that was tried is both quicker and nearer to the reference." }
-        (tables::front(summary))
-        h2 { "What the scene did and did not need" }
-        ul { @for finding in &summary.findings { li { (finding) } } }
-        h2 { "Error against bytes" }
-        div.charts { @for chart in plots::against_bytes(summary) { (chart) } }
-        h2 { "Where errors come from" }
-        p { "Discretisation: exact runs against the reference. Compression: a run with a tolerance against the exact run on the same elements. Iteration: an exchange that ends early against one that does not." }
-        (tables::separated(summary))
-        h2 { "Round by round" }
-        p { "What an exchange proves after each round, and how far it then is from the classic matrix's solution on the same elements." }
-        div.charts { (plots::round_by_round(&summary.exchanges)) (tables::exchanges(summary)) }
-        h2 { "Steps, seconds" }
-        p { "1, 2: form factors inside the first part and the others; 3, 4: between them; 5, 6: equilibrium inside; 7, 8: transfer. T₁ does one after the other, T₂ has parts side by side, T₃ all of 1–4. Those of 1–4 are summed over threads." }
-        (tables::steps(summary))
-        h2 { "All runs" }
-        (tables::all(summary))
+        @if let Some(content) = content {
+            h2 { (title) }
+            @if !text.is_empty() { p.quiet { (text) } }
+            (content)
+        }
+    }
+}
+
+fn side_by_side(charts: Vec<Markup>) -> Option<Markup> {
+    (!charts.is_empty()).then(|| html! { div.charts { @for chart in charts { (chart) } } })
+}
+
+fn results(summary: &Summary) -> Markup {
+    let findings = (!summary.findings.is_empty())
+        .then(|| html! { ul { @for finding in &summary.findings { li { (finding) } } } });
+    html! {
+        (section(
+            "Error against time",
+            "Lower left is better; both axes are logarithmic. Lines join runs that differ in element size alone. Point at a mark to see its command.",
+            side_by_side(plots::against_seconds(summary)),
+        ))
+        (section(
+            "The best settings",
+            "Of the settings of Equilux tried, no other is both quicker and more accurate.",
+            tables::front(summary),
+        ))
+        (section("What the scene needed", "", findings))
+        (section("Error against memory", "", side_by_side(plots::against_bytes(summary))))
+    }
+}
+
+fn explanations(summary: &Summary) -> Markup {
+    let rounds = plots::round_by_round(&summary.exchanges)
+        .map(|chart| html! { div.charts { (chart) div { @if let Some(table) = tables::exchanges(summary) { (table) } } } });
+    html! {
+        (section(
+            "Where errors come from",
+            "Discretisation: an exact run against the reference. Compression: a run with a tolerance against the exact run on the same elements. Iteration: an exchange that ends early against one that does not.",
+            tables::separated(summary),
+        ))
+        (section(
+            "Round by round",
+            "The error that the exchange proves after each round, and its true error: the largest difference from the solution of the classic matrix on the same elements.",
+            rounds,
+        ))
+        (section(
+            "Steps of the paper, seconds",
+            "1, 2: form factors inside the first part and inside the others; 3, 4: between them; 5, 6: local equilibrium; 7, 8: transfer. Steps 1 to 4 are summed over threads. T₁ is one step after the other, T₂ with parts side by side, T₃ with all of steps 1 to 4 side by side.",
+            tables::steps(summary),
+        ))
+        (section("All runs", "", tables::all(summary)))
+    }
+}
+
+fn remarks(summary: &Summary) -> Markup {
+    html! {
         @if !summary.skipped.is_empty() {
             details {
-                summary { (summary.skipped.len()) " settings were left out" }
+                summary { (summary.skipped.len()) " settings were not run" }
                 ul { @for line in &summary.skipped { li { (line) } } }
             }
         }
         p.quiet {
-            "This sweep took " (seconds(summary.seconds)) "; " (summary.reused) " runs were there from before. Seconds are wall time on the machine as it was. "
-            "The classic runs use the same elements: one dense matrix in 64-bit numbers, exact or with rays from each centroid to points spread evenly on each sender, or progressive refinement without a matrix. sweep.csv and sweep.json beside this page hold all numbers."
+            "This sweep took " (seconds(summary.seconds)) " by the clock; " (summary.reused) " runs were kept from an earlier one. "
+            "CPU time is that of all threads together. "
+            "The classic methods use the same elements: a dense matrix of 64-bit numbers, exact or with rays from each centroid to points spread evenly on each sender, or progressive refinement without a matrix. "
+            "sweep.csv and sweep.json beside this page hold all numbers."
         }
     }
 }
