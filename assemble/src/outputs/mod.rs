@@ -202,7 +202,7 @@ fn draw_all(
         if requests.pictures == Pictures::Rounds { light.solved.outcome.rounds.as_slice() } else { &[] };
     let shown: Vec<(usize, &[Rgb])> =
         rounds.iter().filter_map(|round| Some((round.number, round.radiosity.as_deref()?))).collect();
-    monitor.begin("pictures", shown.len());
+    monitor.begin("pictures", shown.len(), 0.0);
     shown.par_iter().try_for_each(|(number, radiosity)| {
         draw(&picture_of(*number), radiosity)?;
         monitor.advance(1);

@@ -154,7 +154,9 @@ fn bake_file(
     outcome.notes.clone_from(&scene.notes);
     outcome.sources.clone_from(&scene.sources);
     let oven = Oven { store, file, resolution: wanted.resolution, monitor };
-    for part in &prepare(&scene, wanted)?.parts {
+    let parts = prepare(&scene, wanted)?.parts;
+    monitor.expect(parts.iter().map(|part| part.geometry.elements.len() as f64).sum());
+    for part in &parts {
         let start = Instant::now();
         let baked = oven.bake(part);
         outcome.notes.extend(damage_notes(store));
