@@ -1,37 +1,39 @@
 //! glTF → elements → exact form factors and visibility → local equilibrium → cache.
 //!
-//! What comes in is a file; what goes out is a [`equilux_formats::BakedPart`] for each part in it. The form-factor code
-//! lives here because `assemble` couples parts with the same.
+//! Each glTF file becomes [`equilux_formats::Part`]s, and each part a [`equilux_formats::BakedPart`], in this order:
+//!
+//! 1. [`gltf_import`] reads a file into parts, instances and lamps; `tidy` removes surfaces that no light can reach.
+//! 2. [`elements`] cuts surfaces into elements, faces that block light, and a hierarchy of clusters; [`textures`] gives
+//!    elements their mean colours.
+//! 3. [`world`] places geometry and knows what blocks light in it; [`meshes`] finds what curved meshes hide.
+//! 4. [`treecode`] computes rows of exact form factors ([`form_factor`]); [`rays`] finds first hits of rays.
+//! 5. [`equilibrium`] solves a part's own light.
+//! 6. [`oven`] runs all this for a part or for many files, and keeps what it makes in a cache.
+//!
+//! [`geometry`] lies below all of them. `assemble` couples parts with the same form-factor code.
 
-pub mod batch;
-pub mod bisect;
-pub mod cached;
 #[cfg(feature = "cli")]
 pub mod cli;
-pub mod clusters;
-pub mod cuts;
-pub mod depfile;
-mod disjoint_sets;
 pub mod elements;
-pub mod enclosed_lamps;
 pub mod equilibrium;
 pub mod form_factor;
+pub mod geometry;
 pub mod gltf_import;
-pub mod keys;
-pub mod merge;
 pub mod meshes;
 pub mod monitor;
-pub mod occluders;
-pub mod outline;
 pub mod oven;
-pub mod planes;
-pub mod prepare;
-pub mod shaft;
-pub mod shells;
-pub mod solids;
-pub mod stamp;
+pub mod rays;
 pub mod textures;
-mod tidy;
+pub mod tidy;
 pub mod treecode;
-pub mod visibility;
 pub mod world;
+
+pub use elements::{bisect, clusters};
+pub use geometry::{outline, planes, shaft, solids};
+pub use oven::{batch, cached, depfile, keys, prepare, stamp};
+pub use tidy::enclosed_lamps;
+
+/// Rays.
+pub mod visibility {
+    pub use crate::rays;
+}

@@ -6,11 +6,12 @@
 //! stands in a room inside a building's shell is inside that shell too, but sees the room.
 
 use crate::placed::Placed;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::solids::{Solid, solids};
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Geometry, Instance};
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 use std::collections::BTreeMap;
 
 /// An element counts as inside when its centroid lies deeper than this share of its size.
@@ -89,7 +90,7 @@ impl Search<'_> {
         let Some(root) = self.world.root_of(self.own) else { return vec![] };
         let node = &self.world.nodes[root];
         let near: Vec<&Solid> =
-            solids.iter().filter(|solid| overlaps(solid, node.low, node.high, self.to_part)).collect();
+            solids.iter().filter(|solid| overlaps(solid, &node.bounds, self.to_part)).collect();
         let elements = self.world.elements_of(self.own);
         elements.filter(|&number| near.iter().any(|solid| self.is_inside(number, solid))).collect()
     }
@@ -113,13 +114,13 @@ impl Search<'_> {
 }
 
 /// Whether the box of a solid can meet a box of the scene.
-fn overlaps(solid: &Solid, low: DVec3, high: DVec3, to_part: DAffine3) -> bool {
-    let centre = to_part.transform_point3((low + high) / 2.0);
-    let half = (high - low) / 2.0;
+fn overlaps(solid: &Solid, bounds: &Aabb, to_part: DAffine3) -> bool {
+    let centre = to_part.transform_point3(bounds.centre());
+    let half = bounds.size() / 2.0;
     let reach = to_part.matrix3.x_axis.abs() * half.x
         + to_part.matrix3.y_axis.abs() * half.y
         + to_part.matrix3.z_axis.abs() * half.z;
-    (centre - reach).cmple(solid.high).all() && (centre + reach).cmpge(solid.low).all()
+    (centre - reach).cmple(solid.bounds.high).all() && (centre + reach).cmpge(solid.bounds.low).all()
 }
 
 /// Directions from an element: along its normal and leaning to four sides of it, as shares of normal and two tangents.

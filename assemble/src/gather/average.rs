@@ -5,6 +5,7 @@ use crate::gather::Gather;
 use crate::gather::piece::{Piece, cells, centre};
 use crate::gather::receiver::receiver;
 use equilux_bake::equilibrium::added;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
@@ -42,10 +43,8 @@ impl Gather {
 
     /// Whether anything stands before a piece at less than its own size.
     fn stands_near(&self, piece: &Piece) -> bool {
-        let low = piece.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = piece.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let reach = (high - low).length() / 2.0;
-        self.anything_before((low - reach, high + reach), piece.corners[0], piece.normal)
+        let bounds = Aabb::around(piece.corners);
+        self.anything_before(bounds.grown(bounds.diagonal() / 2.0), piece.corners[0], piece.normal)
     }
 
     fn glow_over(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {

@@ -54,7 +54,7 @@ impl Gather {
         for ((number, point), sum) in points.iter().enumerate().zip(sums) {
             for (node, form_factor) in rows.row(number) {
                 let sender = &self.world.nodes[node];
-                let to = (sender.low + sender.high) / 2.0 - point.centroid;
+                let to = sender.bounds.centre() - point.centroid;
                 add(sum, form_factor * luminance(sent[node]), to);
             }
         }

@@ -8,6 +8,7 @@ use crate::gather::receiver::receiver;
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::form_factor::polygon::{Polygon, Pyramid};
 use equilux_bake::form_factor::solid_angle::solid_angle;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::outline::Plane;
 use equilux_bake::shaft::Shaft;
 use equilux_bake::world::World;
@@ -106,12 +107,10 @@ impl Lamp {
         own: FaceId,
         mut visit: impl FnMut(Pyramid),
     ) {
-        let low = polygon.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = polygon.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let mut shaft = Shaft::between((self.position, self.position), (low, high));
+        let mut shaft = Shaft::between(Aabb::around([self.position]), Aabb::around(polygon));
         shaft.bound(plane.point, -plane.normal);
         world.occluders.any(
-            |low, high| shaft.misses_box(low, high),
+            |bounds| shaft.misses_box(bounds),
             |occluder| {
                 let others = occluder.faces.iter().filter(|&&face| !world.coplanar(own, FaceId(face)));
                 others

@@ -24,6 +24,7 @@ pub mod sky;
 
 use crate::placed::Placed;
 use equilux_bake::equilibrium::{added, apply, subtract};
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
@@ -133,10 +134,10 @@ impl Gather {
     }
 
     /// Whether anything with corners on the lit side of the plane through `point` may lie in a box.
-    pub fn anything_before(&self, (low, high): (DVec3, DVec3), point: DVec3, normal: DVec3) -> bool {
-        let slack = IN_PLANE * (high - low).length();
+    pub fn anything_before(&self, bounds: Aabb, point: DVec3, normal: DVec3) -> bool {
+        let slack = IN_PLANE * bounds.diagonal();
         let before = |corner: &DVec3| normal.dot(*corner - point) > slack;
-        let apart = |box_low: DVec3, box_high: DVec3| box_low.cmpgt(high).any() || box_high.cmplt(low).any();
+        let apart = |other: &Aabb| !other.meets(&bounds);
         self.world.occluders.any(apart, |occluder| occluder.corners.iter().any(before))
     }
 

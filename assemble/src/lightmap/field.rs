@@ -7,8 +7,8 @@
 use super::texels::{Texel, Texels};
 use crate::gather::Gather;
 use equilux_bake::equilibrium::added;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::Rgb;
-use glam::DVec3;
 use std::collections::HashMap;
 
 /// Squares begin with so many texels a side.
@@ -129,9 +129,7 @@ impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, 
         let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
         let corners = corners.map(|[x, y]| patch.point(glam::dvec2(x, y)));
         let reach = (corners[2] - corners[0]).length() / 4.0;
-        let box_low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min) - reach;
-        let box_high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max) + reach;
-        !self.gather.anything_before((box_low, box_high), corners[0], patch.normal)
+        !self.gather.anything_before(Aabb::around(corners).grown(reach), corners[0], patch.normal)
     }
 }
 

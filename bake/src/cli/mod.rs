@@ -7,9 +7,9 @@ pub mod progress;
 
 mod size;
 
-use crate::batch::{Batch, PartOutcome, bake_files, find_scenes};
-use crate::keys::drop_unused;
 use crate::monitor::Monitor;
+use crate::oven::batch::{Batch, PartOutcome, bake_files, find_scenes};
+use crate::oven::keys::drop_unused;
 use crate::{depfile, stamp};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;

@@ -1,9 +1,9 @@
 //! Options that both programs understand.
 
 use super::length::in_metres;
-use crate::bisect::Cut;
 use crate::elements::ElementSize;
-use crate::prepare::{Division, Preparation};
+use crate::elements::bisect::Cut;
+use crate::oven::prepare::{Division, Preparation};
 use crate::treecode::Resolution;
 use clap::Args;
 use equilux_formats::LocalSolver;

@@ -1,7 +1,8 @@
 //! Gauss-Seidel: B_i ← q_i + ρ_i Σ_j F_ij B_j, each element at once with the newest values. Cohen & Wallace 1993,
 //! ch. 5.3.
 
-use super::{LocalSystem, ROUNDING, added, largest, scaled, subtract};
+use super::channels::{added, largest, scaled, subtract};
+use super::system::{LocalSystem, ROUNDING};
 use equilux_formats::Rgb;
 
 /// Sweeps after which a change below 1e-12 that no longer shrinks is taken for rounding.

@@ -3,7 +3,7 @@
 //!
 //! The matrix is only ever applied to a vector, by the caller: it may be dense, clusters, or blocks between parts.
 
-use super::{added, largest, scaled, subtract};
+use super::channels::{added, largest, scaled, subtract};
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 

@@ -6,9 +6,10 @@
 //! there are, the slow light between them, which goes to and fro many times, is smooth and hardly differs from a sum of
 //! the answers to these. Local responses as a coarse space: Dryja & Widlund 1994; Spillane et al. 2014 for slow modes.
 
-use super::{LocalSystem, added, scaled};
+use super::channels::{added, scaled};
+use super::system::LocalSystem;
+use crate::geometry::aabb::Aabb;
 use equilux_formats::{Answers, Element, Geometry, Rgb};
-use glam::DVec3;
 
 /// What may be left of a source when its answer is taken: the answers guide the exchange, they are not its result.
 const ROUGH: f64 = 1e-2;
@@ -52,10 +53,8 @@ fn open(share: f64) -> f64 {
 
 /// The seven lights.
 fn lights(elements: &[Element]) -> Vec<Light> {
-    let centroids = elements.iter().map(|element| element.centroid);
-    let (low, high) =
-        centroids.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
-    let (centre, extent) = ((low + high) / 2.0, (high - low).max_element().max(f64::MIN_POSITIVE) / 2.0);
+    let around = Aabb::around(elements.iter().map(|element| element.centroid));
+    let (centre, extent) = (around.centre(), around.size().max_element().max(f64::MIN_POSITIVE) / 2.0);
     let mut lights: Vec<Light> = vec![Box::new(|_| 1.0)];
     for axis in 0..3 {
         lights.push(Box::new(move |element| (element.centroid[axis] - centre[axis]) / extent));

@@ -1,39 +1,10 @@
 //! Progressive refinement: the element with the most unshot radiosity shoots first (Southwell relaxation). Cohen,
 //! Chen, Wallace & Greenberg 1988; Gortler & Cohen 1993 for the equivalence with Southwell.
 
-use super::{LocalSystem, ROUNDING, added, largest, scaled, subtract};
-use equilux_formats::{Rgb, Rows};
-
-/// The block by columns: for each node the receivers that see it.
-pub struct Columns {
-    starts: Vec<usize>,
-    entries: Vec<(u32, f64)>,
-}
-
-impl Columns {
-    /// The transpose of `block`.
-    pub fn of(block: &Rows) -> Self {
-        let n = block.receivers();
-        let mut starts = vec![0; block.senders() + 1];
-        (0..n).flat_map(|i| block.row(i)).for_each(|(j, _)| starts[j + 1] += 1);
-        for j in 0..block.senders() {
-            starts[j + 1] += starts[j];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![(0, 0.0); block.stored()];
-        for i in 0..n {
-            for (j, value) in block.row(i) {
-                entries[next[j]] = (i as u32, value);
-                next[j] += 1;
-            }
-        }
-        Self { starts, entries }
-    }
-
-    fn column(&self, sender: usize) -> &[(u32, f64)] {
-        &self.entries[self.starts[sender]..self.starts[sender + 1]]
-    }
-}
+use super::channels::{added, largest, scaled, subtract};
+use super::columns::Columns;
+use super::system::{LocalSystem, ROUNDING};
+use equilux_formats::Rgb;
 
 /// Shoot until what is unshot is rounding.
 pub fn solve(system: &LocalSystem, columns: &Columns, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {

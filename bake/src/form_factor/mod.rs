@@ -6,6 +6,6 @@
 pub mod contour;
 pub mod edges;
 pub mod plain;
-pub mod polygon;
-pub mod solid_angle;
 pub mod wide;
+
+pub use crate::geometry::{polygon, solid_angle};

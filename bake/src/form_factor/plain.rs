@@ -6,15 +6,11 @@
 
 use super::contour;
 use super::polygon::{Polygon, Pyramid, Side, clip};
-use crate::outline::Plane;
+use crate::geometry::outline::Plane;
+use crate::geometry::tolerance::IN_PLANE;
 use crate::world::World;
 use equilux_formats::{Element, Face, FaceId};
 use glam::DVec3;
-
-/// How close to a plane, relative to the distance, a point counts as lying in it. A point in a sender's plane sees
-/// nothing of it and an occluder seen edge-on hides nothing; without this, rounding would make either of them a
-/// sliver. A few thousand times the rounding of f64, a millionth of that of f32.
-pub const IN_PLANE: f64 = 1e-12;
 
 /// The form factor from element `receiver` to element `sender` of `world`, with everything else in the way; without
 /// unit, 0..1. Faces in the plane of either end hide nothing of it.

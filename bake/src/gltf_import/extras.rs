@@ -1,8 +1,7 @@
 //! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `angular_diameter`,
 //! `local_solver`. Other keys are somebody else's and are left alone.
 
-use super::document::Document;
-use super::nodes::label;
+use super::document::{Document, label};
 use super::repaint::{Changes, changes};
 use equilux_formats::{LocalSolver, Result};
 use serde_json::Value;

@@ -1,7 +1,6 @@
 //! The only place where the importer touches the disk. Resolves references found in files, reads the files, lists what was
 //! read, and refuses whatever lies outside the scene's folder.
 
-use super::document::file_name;
 use equilux_formats::{Error, Result};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
@@ -153,4 +152,9 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Error {
         "a readable file",
         "check the path and its permissions",
     )
+}
+
+/// The name of the file at `path`, to speak of it in notes.
+pub(super) fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

@@ -2,8 +2,8 @@
 //! colour what is baked are read.
 
 use super::buffers::{Buffers, uri_bytes};
-use super::document::{Document, file_name};
-use super::files::Files;
+use super::document::Document;
+use super::files::{Files, file_name};
 use super::notes::Notes;
 use equilux_formats::{Error, Result, Texture, Wrap};
 use gltf::json;

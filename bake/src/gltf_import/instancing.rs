@@ -4,8 +4,8 @@
 //! by nothing, and one. The copies take the place of the node's own mesh; what hangs below the node stands once.
 
 use super::accessors::{check_type, components};
-use super::document::Document;
-use super::nodes::{Placed, label};
+use super::document::{Document, label};
+use super::nodes::Placed;
 use equilux_formats::Result;
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::accessor::{DataType, Dimensions};

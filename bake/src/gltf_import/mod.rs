@@ -27,6 +27,7 @@ mod meshes;
 mod nodes;
 mod normal_form;
 mod notes;
+mod open;
 mod part_files;
 mod parts;
 mod repaint;

@@ -1,7 +1,7 @@
 //! The node hierarchy, flattened: in goes a document, out come its nodes in the order of the file, each with where it
 //! stands and what its extras say. Nothing here recurses, so a chain of a million nodes is read like any other file.
 
-use super::document::Document;
+use super::document::{Document, label};
 use super::extras::Extras;
 use super::repaint::{Look, Repaint};
 use equilux_formats::Result;
@@ -48,12 +48,6 @@ impl<'a> Placed<'a> {
         look.repaints.extend(extras.materials.as_ref().map(repaint));
         Ok(Self { node, extras, placement, look })
     }
-}
-
-/// What a node is called: its name, its mesh's, or its number.
-pub(super) fn label(node: &Node) -> String {
-    let named = node.name().or_else(|| node.mesh().and_then(|mesh| mesh.name()));
-    named.filter(|name| !name.is_empty()).map_or_else(|| format!("node {}", node.index()), str::to_owned)
 }
 
 /// The root nodes of the scene, by their own transforms. Fails unless each node has one place in the hierarchy.

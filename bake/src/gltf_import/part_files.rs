@@ -1,13 +1,14 @@
 //! Files that stand for a part: `"part": "file.glb"` in a node's extras. In go references, out come drafts that merge
 //! all that a file holds, and what the files it refers to hold in turn. Each file is read once.
 
-use super::document::{Document, file_name};
+use super::document::Document;
 use super::drafts::{Draft, Settings};
-use super::files::Files;
+use super::files::{Files, file_name};
 use super::lights::light;
 use super::meshes::Meshes;
 use super::nodes::{Placed, roots, subtree};
 use super::notes::Notes;
+use super::open;
 use super::repaint::Asked;
 use equilux_formats::{Error, Result};
 use std::collections::HashMap;
@@ -43,7 +44,7 @@ impl PartFiles {
     /// Reads the document at `path`; references from here on are its.
     pub(super) fn open(&mut self, path: &Path) -> Result<Document> {
         self.chain.push(path.to_path_buf());
-        Document::read(&mut self.files, path, &mut self.notes)
+        open::read(&mut self.files, path, &mut self.notes)
     }
 
     /// What `reference` at the node `placed` of the document `from` stands for, and the path of that file.

@@ -6,13 +6,11 @@
 use super::drafts::{Draft, Paints, Settings};
 use super::materials::{Paint, same_material};
 use super::surfaces::{Dropped, Seen, f64_spacing, has_area};
+use crate::geometry::tolerance::SIMILARITY;
 use equilux_formats::{Part, PartId, Surface, TexturedTriangle};
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
-
-/// How far a transform may be from a similarity, relative: what f32 leaves of a rotation.
-const SIMILARITY: f64 = 1e-6;
 
 /// Splits a root's transform in what is worked into the part and what places it.
 pub(super) fn split(transform: DAffine3) -> (DMat3, DAffine3) {

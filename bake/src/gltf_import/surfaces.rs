@@ -3,15 +3,12 @@
 //! in the same order.
 
 use super::triangles::Triangles;
+use crate::geometry::tolerance::{BENT_QUAD, ROUNDED_CORNERS};
 use equilux_formats::{Corners, MaterialId, Surface, TexturedTriangle};
 use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::AddAssign;
 
-/// How far, in steps of f32, the fourth corner of a quad may be off: each of the four corners was rounded.
-const ROUNDED_CORNERS: f64 = 4.0;
-/// The same in diagonals: beyond that a quad would be visibly bent, however coarse the steps are.
-const BEND: f64 = 1e-4;
 /// Sine of the bluntest corner of a quad that is no parallelogram; cutting up a blunter one makes needles.
 const BLUNTEST: f64 = 0.1;
 /// How far corners may be off their place in a lightmap, in its widths: a tenth of a texel of 4096, or a step of 16-bit
@@ -230,7 +227,7 @@ fn joined(
 /// How far corners may be off beside a diagonal of this length.
 fn slack(quad: &[DVec3; 4], step: f64) -> f64 {
     let [a, b, c, d] = *quad;
-    (ROUNDED_CORNERS * step).min(BEND * (c - a).length().max((d - b).length()))
+    (ROUNDED_CORNERS * step).min(BENT_QUAD * (c - a).length().max((d - b).length()))
 }
 
 fn is_parallelogram(quad: &[DVec3; 4], step: f64) -> bool {

@@ -1,7 +1,7 @@
 //! A piece of an edge as it is seen from the receiver's point: on one side of it something is hidden.
 
 use super::directions::Span;
-use crate::form_factor::plain::IN_PLANE;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// A segment before a sender, with the side on which a face hides what is behind.

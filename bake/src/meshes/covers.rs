@@ -1,6 +1,6 @@
 //! A line of sight that never meets an edge: where it would, it leans to one side.
 
-use crate::form_factor::plain::IN_PLANE;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// A direction, and where it leans if that alone decides nothing.

@@ -2,7 +2,7 @@
 
 use super::arc::Arc;
 use super::directions::{Span, Spans};
-use crate::form_factor::plain::IN_PLANE;
+use crate::geometry::tolerance::IN_PLANE;
 
 /// The arcs, cut wherever another seems to cross or to touch them. A cut too many does no harm, so near-ties cut.
 pub fn cut_at_crossings(arcs: &[Arc]) -> Vec<Arc> {

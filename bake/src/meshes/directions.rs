@@ -4,6 +4,7 @@
 //! small, and so are the boxes around runs of runs. Boxes are kept in f32, rounded outwards; what is found is decided
 //! exactly by whoever asked.
 
+use crate::geometry::tolerance::DIRECTION_MARGIN;
 use glam::{DVec3, Vec3A, Vec4};
 
 /// A box around directions from a point, as unit vectors.
@@ -12,9 +13,6 @@ pub struct Span {
     low: Vec3A,
     high: Vec3A,
 }
-
-/// Boxes reach this much further than what they hold: more than f32 rounds, and than what counts as a near-tie.
-const MARGIN: f32 = 1e-6;
 
 impl Span {
     /// Around nothing.
@@ -32,13 +30,16 @@ impl Span {
             return Self { low: Vec3A::splat(-2.0), high: Vec3A::splat(2.0) };
         }
         let stretch = 1.0 + chord2 / 2.0;
-        Self { low: low.min(low * stretch) - MARGIN, high: high.max(high * stretch) + MARGIN }
+        Self {
+            low: low.min(low * stretch) - DIRECTION_MARGIN,
+            high: high.max(high * stretch) + DIRECTION_MARGIN,
+        }
     }
 
     /// Around this one direction.
     pub fn at(direction: DVec3) -> Self {
         let direction = direction.as_vec3a();
-        Self { low: direction - MARGIN, high: direction + MARGIN }
+        Self { low: direction - DIRECTION_MARGIN, high: direction + DIRECTION_MARGIN }
     }
 
     /// Whether the boxes have a point in common.

@@ -1,18 +1,12 @@
 //! Faces that hide together: corners, edges, and what is known about the whole.
 
-use super::touching_itself::touches_itself;
-use crate::planes::FLATNESS;
-use crate::visibility::{BoxTree, Inside};
-use equilux_formats::Face;
+use crate::geometry::aabb::Aabb;
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// A mesh of planar convex faces, of any shape. Corners are the same if they are equal to the bit.
 pub struct Mesh {
-    /// Lowest corner of its box.
-    pub low: DVec3,
-    /// Highest corner of its box.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// The faces, as they are numbered outside; neighbours in this list are near each other.
     pub faces: Vec<u32>,
     /// All corners, once each.
@@ -26,11 +20,11 @@ pub struct Mesh {
     /// Whether fronts look away from a bounded inside, and not into a hollow.
     pub(super) looks_out: bool,
     /// Corner numbers of all faces, and where each face's begin.
-    loops: Vec<u32>,
-    first: Vec<u32>,
-    normals: Vec<DVec3>,
+    pub(super) loops: Vec<u32>,
+    pub(super) first: Vec<u32>,
+    pub(super) normals: Vec<DVec3>,
     /// The faces in rising order.
-    sorted: Vec<u32>,
+    pub(super) sorted: Vec<u32>,
 }
 
 /// An edge, counter-clockwise around the face on its left seen from the front.
@@ -47,49 +41,6 @@ pub(super) struct Edge {
 }
 
 impl Mesh {
-    /// The mesh of `group`, some of `faces`. They should hang together: loose triangles are taken, too, but then no edge
-    /// is left out of the silhouette.
-    pub fn from_faces(group: &[u32], faces: &[Face]) -> Self {
-        let tree = BoxTree::new(&group.iter().map(|&face| bounds(&faces[face as usize])).collect::<Vec<_>>());
-        let mut mesh = Self::without_edges(group, in_order(&tree).map(|i| group[i]).collect(), faces);
-        mesh.edges = mesh.find_edges();
-        mesh.touches_itself = touches_itself(&mesh);
-        mesh.bounds_a_solid = !mesh.touches_itself && mesh.edges.iter().all(|edge| edge.right.is_some());
-        mesh.looks_out = mesh.volume() > 0.0;
-        mesh
-    }
-
-    fn without_edges(group: &[u32], order: Vec<u32>, faces: &[Face]) -> Self {
-        let mut corners = Vec::new();
-        let mut numbers = HashMap::new();
-        let (mut loops, mut first) = (vec![], vec![0]);
-        for &face in &order {
-            for &corner in &faces[face as usize].corners {
-                loops.push(*numbers.entry(bits(corner)).or_insert_with(|| {
-                    corners.push(corner);
-                    corners.len() as u32 - 1
-                }));
-            }
-            first.push(loops.len() as u32);
-        }
-        let mut sorted = group.to_vec();
-        sorted.sort_unstable();
-        Self {
-            low: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
-            high: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
-            normals: order.iter().map(|&face| faces[face as usize].normal).collect(),
-            faces: order,
-            corners,
-            bounds_a_solid: false,
-            edges: vec![],
-            touches_itself: false,
-            looks_out: false,
-            loops,
-            first,
-            sorted,
-        }
-    }
-
     /// Whether a face, as numbered outside, is one of the mesh's.
     pub fn has(&self, face: u32) -> bool {
         self.sorted.binary_search(&face).is_ok()
@@ -104,79 +55,10 @@ impl Mesh {
     pub(super) fn normal(&self, face: usize) -> DVec3 {
         self.normals[face]
     }
-
-    fn find_edges(&self) -> Vec<Edge> {
-        let mut left_of: HashMap<[u32; 2], Vec<u32>> = HashMap::new();
-        for face in 0..self.faces.len() {
-            for ends in steps(self.around(face)) {
-                left_of.entry(ends).or_default().push(face as u32);
-            }
-        }
-        let mut edges = Vec::with_capacity(left_of.len() / 2);
-        for left in 0..self.faces.len() as u32 {
-            for [a, b] in steps(self.around(left as usize)) {
-                match (left_of[&[a, b]].as_slice(), left_of.get(&[b, a]).map(Vec::as_slice)) {
-                    ([_], Some(&[right])) if left > right => {}
-                    ([_], Some(&[right])) => {
-                        let rise = self.rise(left as usize, right as usize);
-                        edges.push(Edge { ends: [a, b], left, right: Some(right), rise });
-                    }
-                    _ => edges.push(Edge { ends: [a, b], left, right: None, rise: 0.0 }),
-                }
-            }
-        }
-        edges
-    }
-
-    /// Height of the face `other` in front of `face`, zero if it lies in its plane.
-    fn rise(&self, face: usize, other: usize) -> f64 {
-        let (normal, origin) = (self.normals[face], self.corners[self.around(face)[0] as usize]);
-        let height = |&corner: &u32| normal.dot(self.corners[corner as usize] - origin);
-        let furthest = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
-        let rise = self.around(other).iter().map(height).fold(0.0, furthest);
-        if rise.abs() <= FLATNESS * (self.high - self.low).length() { 0.0 } else { rise }
-    }
-
-    /// Six times the volume behind the fronts of a closed mesh, below zero if that is all the space around a hollow.
-    fn volume(&self) -> f64 {
-        let cone = |face: usize| {
-            let around = self.around(face);
-            let at = |i: usize| self.corners[around[i] as usize] - self.low;
-            (1..around.len() - 1).map(|i| at(0).dot(at(i).cross(at(i + 1)))).sum::<f64>()
-        };
-        (0..self.faces.len()).map(cone).sum()
-    }
 }
 
 /// The edges of a loop of corners.
 pub(super) fn steps(around: &[u32]) -> impl Iterator<Item = [u32; 2]> + '_ {
     let last = around[around.len() - 1];
     around.iter().scan(last, |before, &corner| Some([std::mem::replace(before, corner), corner]))
-}
-
-/// A point as a key: equal to the bit.
-fn bits(p: DVec3) -> [u64; 3] {
-    (p + 0.0).to_array().map(f64::to_bits)
-}
-
-fn bounds(face: &Face) -> (DVec3, DVec3) {
-    let low = face.corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-    (low, face.corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max))
-}
-
-/// The things of a hierarchy such that neighbours are near each other.
-fn in_order(tree: &BoxTree) -> impl Iterator<Item = usize> + '_ {
-    let mut open: Vec<usize> = tree.root().into_iter().collect();
-    let mut things: &[u32] = &[];
-    std::iter::from_fn(move || {
-        while things.is_empty() {
-            match tree.inside(open.pop()?) {
-                Inside::Boxes([left, right]) => open.extend([right, left]),
-                Inside::Things(inside) => things = inside,
-            }
-        }
-        let (&first, rest) = things.split_first()?;
-        things = rest;
-        Some(first as usize)
-    })
 }

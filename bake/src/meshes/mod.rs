@@ -13,6 +13,7 @@ mod arc;
 mod covers;
 mod crossings;
 mod directions;
+mod from_faces;
 mod mesh;
 mod obstruction;
 mod pieces;

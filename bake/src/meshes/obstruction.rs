@@ -6,8 +6,8 @@ use super::crossings::cut_at_crossings;
 use super::mesh::steps;
 use super::seen::{Arcs, Hiding, SeenMesh};
 use super::sender::{SeenPolygon, middle};
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::Hides;
+use crate::geometry::polygon::Hides;
+use crate::geometry::tolerance::{APART, IN_PLANE, TEN_OPERATIONS};
 use glam::DVec3;
 
 /// A mesh and a sender, both as one receiver sees them.
@@ -29,13 +29,6 @@ enum Place {
     /// Partly behind the sender's plane, or on it.
     Across,
 }
-
-/// A mesh counts as wholly before a plane, or apart from a sender, only if it is this far from it, relative to its
-/// size; if not, its faces are asked one by one.
-const CLEAR: f64 = 1e-6;
-
-/// Relative error of a few operations.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     /// `coplanar` tells which faces, as numbered outside, lie in the sender's plane: those hide nothing of it.
@@ -100,9 +93,9 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     /// Whether the mesh may go through the sender, or touch it.
     fn may_touch(&self) -> bool {
         let (mesh, point) = (self.seen.mesh, self.seen.point);
-        let margin = CLEAR * (mesh.high - mesh.low).length();
+        let margin = APART * mesh.bounds.diagonal();
         (mesh.touches_itself || !mesh.has(self.sender.face))
-            && self.sender.meets_box(mesh.low - point - margin, mesh.high - point + margin)
+            && self.sender.meets_box(mesh.bounds.moved(-point).grown(margin))
     }
 
     /// Where faces go through the sender or end on it: what is before its plane hides what is beside the seam.
@@ -158,7 +151,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
         let height = self.sender.height(sight.along * distance);
         // A face that is seen nearly edge-on is met at a distance that rounding shifts the more.
         let grazing = self.seen.mesh.normal(face).dot(sight.along).abs();
-        if height.abs() > self.slack(distance) + ROUNDING * distance / grazing {
+        if height.abs() > self.slack(distance) + TEN_OPERATIONS * distance / grazing {
             height > 0.0
         } else {
             sight.rises(self.seen.mesh.normal(face), self.sender.normal)
@@ -180,12 +173,11 @@ fn place(seen: &SeenMesh, sender: &SeenPolygon) -> Place {
     if !seen.span.meets(&sender.span) {
         return Place::Aside;
     }
-    let (low, high) = (seen.mesh.low, seen.mesh.high);
-    let half = (high - low) / 2.0;
-    let (lowest, highest) = sender.heights_of_box((low + high) / 2.0 - seen.point, half);
+    let (centre, half) = (seen.mesh.bounds.centre(), seen.mesh.bounds.size() / 2.0);
+    let (lowest, highest) = sender.heights_of_box(centre - seen.point, half);
     if highest <= IN_PLANE * sender.reach {
         Place::Aside
-    } else if lowest > CLEAR * half.length() {
+    } else if lowest > APART * half.length() {
         Place::Before
     } else {
         Place::Across

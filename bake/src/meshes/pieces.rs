@@ -6,11 +6,9 @@
 
 use super::arc::Arc;
 use super::obstruction::Obstruction;
-use crate::form_factor::polygon::{Hides, Polygon, Side, clip};
+use crate::geometry::polygon::{Hides, Polygon, Side, clip};
+use crate::geometry::tolerance::SHORTEST_ARC;
 use glam::DVec3;
-
-/// A shorter arc, in radians, does not tell on its own on which side of it is what; a face is asked.
-const TELLING: f64 = 1e-7;
 
 impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
     /// Hand to `outside` the convex pieces of the sender that the mesh does not hide, and say which case it was.
@@ -53,7 +51,7 @@ impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
     }
 
     fn is_hidden(&self, piece: &[DVec3], splitter: &Arc, side: bool) -> bool {
-        if splitter.length() > TELLING { side } else { self.hides_piece(piece) }
+        if splitter.length() > SHORTEST_ARC { side } else { self.hides_piece(piece) }
     }
 }
 

@@ -5,7 +5,7 @@ use super::covers::Sight;
 use super::crossings::cut_at_crossings;
 use super::directions::{Span, Spans};
 use super::mesh::{Edge, Mesh, steps};
-use crate::form_factor::plain::IN_PLANE;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::{DVec3, Vec3A};
 
 /// What all senders of one receiver share.
@@ -131,8 +131,7 @@ impl SeenMesh<'_> {
 
     /// Whether the receiver looks into the solid: the next face along its normal tells.
     fn is_inside(&self, normal: DVec3, heights: &[f64]) -> bool {
-        let outside = self.point.cmplt(self.mesh.low).any() || self.point.cmpgt(self.mesh.high).any();
-        if outside {
+        if !self.mesh.bounds.holds(self.point) {
             return !self.mesh.looks_out;
         }
         let sight = Sight::along(normal);

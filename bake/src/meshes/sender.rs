@@ -1,8 +1,9 @@
 //! A sender polygon as it is seen from one receiver.
 
 use super::directions::Span;
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::Polygon;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// What all meshes that may hide a sender share.
@@ -40,7 +41,7 @@ impl SeenPolygon {
     }
 
     /// Whether its box meets another, relative to the receiver's point.
-    pub(super) fn meets_box(&self, low: DVec3, high: DVec3) -> bool {
+    pub(super) fn meets_box(&self, Aabb { low, high }: Aabb) -> bool {
         let below = |axis: usize| self.corners.iter().all(|p| p[axis] < low[axis]);
         let above = |axis: usize| self.corners.iter().all(|p| p[axis] > high[axis]);
         !(0..3).any(|axis| below(axis) || above(axis))

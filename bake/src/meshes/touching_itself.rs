@@ -1,20 +1,21 @@
 //! Whether a mesh goes through itself, or touches itself other than along the edges that its faces share.
 
 use super::mesh::{Mesh, steps};
-use crate::form_factor::plain::IN_PLANE;
-use crate::visibility::{BoxTree, Inside};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::box_tree::{BoxTree, Inside};
+use crate::geometry::tolerance::{IN_PLANE, INSIDE_A_FACE};
 use glam::DVec3;
 
 /// Whether an edge of any face goes through the inside of another, or touches it. Where faces cross, one of them has
 /// an edge that goes through the other.
 pub(super) fn touches_itself(mesh: &Mesh) -> bool {
-    let boxes: Vec<(DVec3, DVec3)> = (0..mesh.faces.len()).map(|face| bounds(mesh, face)).collect();
+    let boxes: Vec<Aabb> = (0..mesh.faces.len()).map(|face| bounds(mesh, face)).collect();
     let tree = BoxTree::new(&boxes);
     let mut open = Vec::new();
     (0..boxes.len()).any(|face| {
         open.extend(tree.root());
         while let Some(node) = open.pop() {
-            if !meet(boxes[face], (tree.node(node).low, tree.node(node).high)) {
+            if !boxes[face].meets(&tree.node(node).bounds) {
                 continue;
             }
             match tree.inside(node) {
@@ -22,7 +23,7 @@ pub(super) fn touches_itself(mesh: &Mesh) -> bool {
                 Inside::Things(others) => {
                     let others = others.iter().map(|&other| other as usize);
                     if others
-                        .filter(|&o| o != face && meet(boxes[face], boxes[o]))
+                        .filter(|&o| o != face && boxes[face].meets(&boxes[o]))
                         .any(|o| touches(mesh, face, o))
                     {
                         return true;
@@ -34,23 +35,15 @@ pub(super) fn touches_itself(mesh: &Mesh) -> bool {
     })
 }
 
-/// How far from the edges of a face, relative to the mesh, its inside begins: faces that share a corner touch there.
-const INSIDE: f64 = 1e-9;
-
-fn bounds(mesh: &Mesh, face: usize) -> (DVec3, DVec3) {
-    let corners = mesh.around(face).iter().map(|&corner| mesh.corners[corner as usize]);
-    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)))
-}
-
-fn meet(a: (DVec3, DVec3), b: (DVec3, DVec3)) -> bool {
-    (a.0.cmple(b.1) & b.0.cmple(a.1)).all()
+fn bounds(mesh: &Mesh, face: usize) -> Aabb {
+    Aabb::around(mesh.around(face).iter().map(|&corner| mesh.corners[corner as usize]))
 }
 
 /// Whether an edge of one face meets the inside of the other.
 fn touches(mesh: &Mesh, face: usize, other: usize) -> bool {
     let at = |corner: u32| mesh.corners[corner as usize];
     let (normal, around) = (mesh.normal(other), mesh.around(other));
-    let size = (mesh.high - mesh.low).length();
+    let size = mesh.bounds.diagonal();
     let height = |p: DVec3| normal.dot(p - at(around[0]));
     steps(mesh.around(face)).any(|[a, b]| {
         let (a, b) = (at(a), at(b));
@@ -63,7 +56,8 @@ fn touches(mesh: &Mesh, face: usize, other: usize) -> bool {
         let (mut from, mut to) = (0.0f64, 1.0f64);
         for [c, d] in steps(around) {
             let side = normal.cross(at(d) - at(c)).normalize();
-            let (da, db) = (side.dot(a - at(c)) - INSIDE * size, side.dot(b - at(c)) - INSIDE * size);
+            let (da, db) =
+                (side.dot(a - at(c)) - INSIDE_A_FACE * size, side.dot(b - at(c)) - INSIDE_A_FACE * size);
             match (da > 0.0, db > 0.0) {
                 (false, false) => return false,
                 (false, true) => from = from.max(da / (da - db)),

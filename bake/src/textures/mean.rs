@@ -12,7 +12,7 @@
 
 use super::area_and_middle;
 use super::sums::Sums;
-use crate::form_factor::polygon::{Polygon, part};
+use crate::geometry::polygon::{Polygon, part};
 use equilux_formats::{Rgb, Wrap};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;

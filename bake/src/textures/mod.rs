@@ -7,8 +7,10 @@
 mod mean;
 mod sums;
 
-use crate::form_factor::polygon::{Polygon, Side, clip};
-use crate::visibility::BoxTree;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::box_tree::BoxTree;
+use crate::geometry::polygon::{Polygon, Side, clip};
+use crate::geometry::tolerance::{BENT, JOINED};
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -16,10 +18,6 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use sums::Sums;
 
-/// How far a quad made of two triangles may lie off one of them, in its longest edges: twice what the importer takes for flat.
-const BENT: f64 = 2e-4;
-/// How far elements that were cut out of joined surfaces may lie off these, relative to the largest coordinate.
-const JOINED: f64 = 1e-6;
 /// Cosine of the angle up to which an element and a triangle look to the same side.
 const SAME_SIDE: f64 = 0.5;
 
@@ -67,7 +65,7 @@ impl<'a> Coat<'a> {
             textured.iter().map(Sheet::new).filter(|sheet| sheet.normal.is_finite()).collect();
         let corners = || triangles.iter().flat_map(|sheet| sheet.triangle.corners);
         let slack = JOINED * corners().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        let boxes: Vec<(DVec3, DVec3)> = triangles.iter().map(|sheet| sheet.bounds(slack)).collect();
+        let boxes: Vec<Aabb> = triangles.iter().map(|sheet| sheet.bounds(slack)).collect();
         let textures = materials.iter().flat_map(|m| [&m.textures.reflectance, &m.textures.emission]);
         let mut sums = HashMap::new();
         for texture in textures.flatten() {
@@ -126,8 +124,7 @@ impl<'a> Coat<'a> {
     }
 
     fn near(&self, corners: &[DVec3]) -> Vec<&Sheet<'_>> {
-        let (low, high) = bounds(corners);
-        self.tree.meeting(low, high).into_iter().map(|i| &self.triangles[i as usize]).collect()
+        self.tree.meeting(Aabb::around(corners)).into_iter().map(|i| &self.triangles[i as usize]).collect()
     }
 }
 
@@ -143,9 +140,8 @@ impl<'a> Sheet<'a> {
         joined + BENT * self.longest
     }
 
-    fn bounds(&self, joined: f64) -> (DVec3, DVec3) {
-        let (low, high) = bounds(&self.triangle.corners);
-        (low - self.slack(joined), high + self.slack(joined))
+    fn bounds(&self, joined: f64) -> Aabb {
+        Aabb::around(&self.triangle.corners).grown(self.slack(joined))
     }
 
     /// What of a polygon lies over the triangle.
@@ -181,10 +177,6 @@ impl<'a> Sheet<'a> {
         let (weights, colours) = (self.weights(p), &self.triangle.colours);
         std::array::from_fn(|c| (0..3).map(|corner| weights[corner] * colours[corner][c]).sum())
     }
-}
-
-fn bounds(corners: &[DVec3]) -> (DVec3, DVec3) {
-    corners.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
 /// Area and centre of area of a planar convex polygon.

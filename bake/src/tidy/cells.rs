@@ -2,7 +2,8 @@
 //!
 //! All corners are in the coordinates of the surface's part.
 
-use crate::form_factor::polygon::{Polygon, Side, clip};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::polygon::{Polygon, Side, clip};
 use equilux_formats::{Corners, Part, Surface};
 use glam::{DVec2, DVec3};
 
@@ -32,9 +33,8 @@ impl Facing {
     }
 
     /// The box around it.
-    pub(super) fn bounds(&self) -> (DVec3, DVec3) {
-        let corners = || self.corners.iter().copied();
-        (corners().fold(DVec3::INFINITY, DVec3::min), corners().fold(DVec3::NEG_INFINITY, DVec3::max))
+    pub(super) fn bounds(&self) -> Aabb {
+        Aabb::around(&self.corners)
     }
 
     /// Whether two sides lie in one plane and look the same way, and lie on each other by more than `tolerance`, metres.

@@ -6,14 +6,12 @@
 //! camera is not clearly outside of it in one of its places. What only reflects does not matter: inside a closed opaque
 //! shell it is as dark as the shell.
 
-use crate::shells::{Shell, closed_shells, winding_number};
-use crate::visibility::BoxTree;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::box_tree::BoxTree;
+use crate::geometry::shells::{Shell, closed_shells, winding_number};
+use crate::geometry::tolerance::IN_FRONT;
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
-
-/// How far in front of a surface the light it sends is looked for, in diagonals of the shell: a panel that lies in a room's
-/// ceiling shines into the room. Larger than what f32 leaves of a plane.
-const IN_FRONT: f64 = 1e-5;
 
 /// How far corners of a surface that shines are drawn in, so that one in the corner of a room is looked for in the room.
 const DRAWN_IN: f64 = 0.01;
@@ -106,7 +104,7 @@ impl Sources {
         for (number, instance) in scene.instances.iter().enumerate() {
             all.extend(shining(&scene.parts[instance.part.index()], number, instance));
         }
-        let boxes: Vec<(DVec3, DVec3)> = all.iter().map(|source| (source.point, source.point)).collect();
+        let boxes: Vec<Aabb> = all.iter().map(|source| Aabb::around([source.point])).collect();
         Self { tree: BoxTree::new(&boxes), all }
     }
 
@@ -121,11 +119,9 @@ impl Sources {
                 if inward { surface.flipped() } else { surface }
             })
             .collect();
-        let corners = || outwards.iter().flat_map(|surface| surface.corners.as_slice()).copied();
-        let placed = || corners().map(|corner| instance.placement.transform_point3(corner));
-        let (low, high) =
-            (placed().fold(DVec3::INFINITY, DVec3::min), placed().fold(DVec3::NEG_INFINITY, DVec3::max));
-        let step = IN_FRONT * (high - low).length();
+        let corners = outwards.iter().flat_map(|surface| surface.corners.as_slice());
+        let bounds = Aabb::around(corners.map(|&corner| instance.placement.transform_point3(corner)));
+        let step = IN_FRONT * bounds.diagonal();
         let to_part = instance.placement.inverse();
         let is_in = |source: &Source| {
             let own = source.surface.is_some_and(|(instance, surface)| {
@@ -134,7 +130,7 @@ impl Sources {
             let point = to_part.transform_point3(source.point + source.normal * step);
             !own && winding_number(point, outwards.iter().map(|s| s.corners.as_slice())) > OUTSIDE
         };
-        self.tree.meeting(low - step, high + step).into_iter().any(|source| is_in(&self.all[source as usize]))
+        self.tree.meeting(bounds.grown(step)).into_iter().any(|source| is_in(&self.all[source as usize]))
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod cells;
+pub mod enclosed_lamps;
 mod hidden_backs;
 mod overlaps;
 mod recentre;

@@ -6,10 +6,11 @@
 
 use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
-use crate::keys::rounded;
-use crate::planes;
-use crate::shells::closed_shells;
-use crate::visibility::BoxTree;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::box_tree::BoxTree;
+use crate::geometry::planes;
+use crate::geometry::rounded_placement::RoundedPlacement;
+use crate::geometry::shells::closed_shells;
 use equilux_formats::{Instance, Part, PartId, Scene, Surface};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
@@ -51,26 +52,20 @@ struct Sides {
 
 impl Sides {
     /// The sides of the surfaces of a part after `placement`, where `is_wanted` takes their boxes.
-    fn of(part: &Part, placement: DAffine3, is_wanted: impl Fn(DVec3, DVec3) -> bool) -> Self {
+    fn of(part: &Part, placement: DAffine3, is_wanted: impl Fn(&Aabb) -> bool) -> Self {
         let placed = part.surfaces.iter().map(|surface| surface.placed(placement)).enumerate();
         let sides = placed.flat_map(|(number, surface)| {
             let sides: Vec<Facing> = Facing::sides(part, &surface).collect();
             sides.into_iter().map(move |side| (number, side))
         });
-        let all: Vec<(usize, Facing)> = sides
-            .filter(|(_, side)| {
-                let (low, high) = side.bounds();
-                is_wanted(low, high)
-            })
-            .collect();
-        let boxes: Vec<(DVec3, DVec3)> = all.iter().map(|(_, side)| side.bounds()).collect();
+        let all: Vec<(usize, Facing)> = sides.filter(|(_, side)| is_wanted(&side.bounds())).collect();
+        let boxes: Vec<Aabb> = all.iter().map(|(_, side)| side.bounds()).collect();
         Self { tree: BoxTree::new(&boxes), all }
     }
 
     /// Those that lie on `side`, of surfaces that `counts` takes, by rising number.
     fn on(&self, side: &Facing, tolerance: f64, counts: impl Fn(usize) -> bool) -> Vec<usize> {
-        let (low, high) = side.bounds();
-        let near = self.tree.meeting(low - tolerance, high + tolerance).into_iter().map(|i| i as usize);
+        let near = self.tree.meeting(side.bounds().grown(tolerance)).into_iter().map(|i| i as usize);
         let mut on: Vec<usize> =
             near.filter(|&i| counts(self.all[i].0) && self.all[i].1.overlaps(side, tolerance)).collect();
         on.sort_unstable();
@@ -82,7 +77,7 @@ impl Sides {
 fn cut_within(part: &mut Part) -> usize {
     let corners = || part.surfaces.iter().flat_map(|surface| surface.corners.as_slice());
     let tolerance = planes::tolerance(corners());
-    let sides = Sides::of(part, DAffine3::IDENTITY, |_, _| true);
+    let sides = Sides::of(part, DAffine3::IDENTITY, |_| true);
     let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
     for (surface, side) in &sides.all {
         for on in sides.on(side, tolerance, |other| other < *surface) {
@@ -124,18 +119,16 @@ fn cut(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>, tolerance: f64) -> Ve
 
 /// Cuts away what earlier instances cover, and says who covers whom.
 fn cut_across(scene: &mut Scene) -> Vec<String> {
-    let bounds: Vec<(DVec3, DVec3)> =
-        scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
-    let tolerances: Vec<f64> = bounds.iter().map(|(low, high)| planes::tolerance([low, high])).collect();
+    let bounds: Vec<Aabb> = scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
+    let tolerances: Vec<f64> = bounds.iter().map(|b| planes::tolerance([&b.low, &b.high])).collect();
     let tree = BoxTree::new(&bounds);
     let (mut variants, mut covered) = (Variants::default(), Vec::new());
     for number in 0..scene.instances.len() {
-        let (low, high) = bounds[number];
         let widest = tolerances.iter().copied().fold(0.0, f64::max);
-        let near = tree.meeting(low - widest, high + widest).into_iter().map(|other| other as usize);
+        let near = tree.meeting(bounds[number].grown(widest)).into_iter().map(|other| other as usize);
         let tolerance = |other: usize| tolerances[number].max(tolerances[other]);
         let is_near =
-            |&other: &usize| other < number && meet(bounds[other], bounds[number], tolerance(other));
+            |&other: &usize| other < number && meet(&bounds[other], &bounds[number], tolerance(other));
         let mut near: Vec<usize> = near.filter(is_near).collect();
         near.sort_unstable();
         let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
@@ -160,8 +153,8 @@ fn cut_across(scene: &mut Scene) -> Vec<String> {
     covered
 }
 
-fn meet(a: (DVec3, DVec3), b: (DVec3, DVec3), tolerance: f64) -> bool {
-    (a.0 - tolerance).cmple(b.1).all() && (b.0 - tolerance).cmple(a.1).all()
+fn meet(a: &Aabb, b: &Aabb, tolerance: f64) -> bool {
+    (a.low - tolerance).cmple(b.high).all() && (b.low - tolerance).cmple(a.high).all()
 }
 
 /// By surface of instance `own` the sides of instance `other` that lie on it, in the coordinates of `own`.
@@ -169,9 +162,9 @@ fn covered_by(scene: &Scene, own: usize, other: usize, tolerance: f64) -> BTreeM
     let [(own, part), (other, other_part)] =
         [own, other].map(|k| (&scene.instances[k], &scene.parts[scene.instances[k].part.index()]));
     let tolerance = tolerance / scale(own);
-    let to_own = rounded(own.placement.inverse() * other.placement);
-    let (low, high) = part_bounds(part);
-    let is_near = |a: DVec3, b: DVec3| meet((a, b), (low, high), tolerance);
+    let to_own = DAffine3::from(RoundedPlacement::from(own.placement.inverse() * other.placement));
+    let own_bounds = part_bounds(part);
+    let is_near = |other: &Aabb| meet(other, &own_bounds, tolerance);
     let sides = Sides::of(other_part, to_own, is_near);
     let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
     if sides.all.is_empty() {

@@ -4,8 +4,8 @@
 //! kilometres from its file's origin would have tolerances of metres.
 
 use super::bounds::placed_bounds;
+use crate::geometry::aabb::Aabb;
 use equilux_formats::Scene;
-use glam::DVec3;
 
 /// A scene is moved once it is further away than about this many times its extent. A power of two.
 const FAR: f64 = 16.0;
@@ -13,15 +13,14 @@ const FAR: f64 = 16.0;
 /// Moves a scene that is far away from its file's origin close to its own, which it keeps in `origin`.
 pub(super) fn recentre(scene: &mut Scene) {
     let boxes = scene.instances.iter().map(|instance| placed_bounds(&scene.parts, instance));
-    let around = |(low, high): (DVec3, DVec3), (l, h): (DVec3, DVec3)| (low.min(l), high.max(h));
-    let (low, high) = boxes.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), around);
-    let extent = (high - low).max_element();
+    let around = boxes.fold(Aabb::EMPTY, Aabb::union);
+    let extent = around.size().max_element();
     if !(extent > 0.0 && extent.is_finite()) {
         return;
     }
     // Whole multiples of a power of two are subtracted without rounding.
     let step = 2f64.powi((FAR * extent).log2().ceil() as i32);
-    let origin = ((low + high) / 2.0 / step).round() * step;
+    let origin = (around.centre() / step).round() * step;
     scene.instances.iter_mut().for_each(|instance| instance.placement.translation -= origin);
     scene.lights.iter_mut().for_each(|light| light.position -= origin);
     scene.cameras.iter_mut().for_each(|camera| camera.placement.translation -= origin);

@@ -1,12 +1,12 @@
 //! Lists of what may stand between receivers and a sender. They start with the box around everything and are narrowed
 //! on the way down the two hierarchies; entries are boxes that have not been opened, or occluders.
 
-use super::viewers::{Viewers, box_corners};
+use super::viewers::Viewers;
 use crate::form_factor::wide::vectorised;
-use crate::occluders::{Shape, Together};
-use crate::planes::FLATNESS;
-use crate::shaft::Shaft;
-use crate::visibility::Inside;
+use crate::geometry::box_tree::Inside;
+use crate::geometry::shaft::Shaft;
+use crate::geometry::tolerance::ON_FACE;
+use crate::world::occluders::{Shape, Together};
 use crate::world::{Node, World};
 use equilux_formats::{Face, FaceId};
 use glam::DVec3;
@@ -40,10 +40,6 @@ pub enum Verdict {
 /// Boxes larger than this share of receivers or sender are opened: smaller ones would only lengthen the list.
 const OPEN_ABOVE: f64 = 0.5;
 
-/// What is nearer to a face than this, relative to its extent or distance, may be part of it: its own elements are as far
-/// from it as corners that are kept in f32 may be from their plane.
-const ON_FACE: f64 = 4.0 * FLATNESS;
-
 /// Up to this many faces of a mesh hide one by one, which shows when one of them hides everything; more hide together.
 const FEW: usize = 8;
 
@@ -75,7 +71,7 @@ impl<'a> Candidates<'a> {
 
     /// What of `list` can stand between viewers and sender.
     pub fn narrow(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node) -> Verdict {
-        let size = viewers.diameter.max((sender.high - sender.low).length());
+        let size = viewers.diameter.max(sender.bounds.diagonal());
         self.filter(list, viewers, sender, OPEN_ABOVE * size)
     }
 
@@ -90,7 +86,7 @@ impl<'a> Candidates<'a> {
         }
         let around;
         let corners = if sender.polygon.is_empty() {
-            around = box_corners(sender.low, sender.high);
+            around = sender.bounds.corners();
             &around
         } else {
             &sender.polygon
@@ -109,10 +105,10 @@ impl<'a> Candidates<'a> {
             match entry {
                 Entry::Box(index) => {
                     let node = self.world.occluders.tree.node(index as usize);
-                    if between.shaft.misses_box(node.low, node.high) {
+                    if between.shaft.misses_box(&node.bounds) {
                         continue;
                     }
-                    if (node.high - node.low).length() <= open_above {
+                    if node.bounds.diagonal() <= open_above {
                         self.entries.push(entry);
                         continue;
                     }
@@ -167,7 +163,7 @@ struct Between<'a> {
 impl<'a> Between<'a> {
     #[inline(always)]
     fn new(world: &'a World, viewers: &'a Viewers, sender: &Node, corners: &'a [DVec3]) -> Self {
-        let mut shaft = Shaft::between(viewers.bounds, (sender.low, sender.high));
+        let mut shaft = Shaft::between(viewers.bounds, sender.bounds);
         if let Some(flat) = &viewers.flat {
             shaft.bound(viewers.hull[0], -flat.normal);
         }
@@ -176,7 +172,7 @@ impl<'a> Between<'a> {
         }
         let middle = |corners: &[DVec3]| corners.iter().sum::<DVec3>() / corners.len() as f64;
         // A share t of the way along, sections hold t of the sender and 1 − t of the viewers.
-        let (near, far) = (viewers.diameter, (sender.high - sender.low).length());
+        let (near, far) = (viewers.diameter, sender.bounds.diagonal());
         Self {
             world,
             viewers,
@@ -210,7 +206,7 @@ impl<'a> Between<'a> {
             }
             Shape::Mesh(_) => {}
         }
-        self.shaft.misses_box(occluder.low, occluder.high) || self.shaft.misses(&occluder.corners)
+        self.shaft.misses_box(&occluder.bounds) || self.shaft.misses(&occluder.corners)
     }
 
     /// The faces of a mesh that may stand in between; none if they are more than [`FEW`].
@@ -219,7 +215,7 @@ impl<'a> Between<'a> {
         let mut open: SmallVec<[usize; 32]> = tree.root().into_iter().collect();
         while let Some(index) = open.pop() {
             let node = tree.node(index);
-            if self.shaft.misses_box(node.low, node.high) {
+            if self.shaft.misses_box(&node.bounds) {
                 continue;
             }
             match tree.inside(index) {

@@ -1,9 +1,9 @@
 //! What an occluder hides from each receiver of a cluster, lane by lane: the planes through the receiver's point and the
 //! edges of the silhouette. And how a sender lies to them.
 
-use crate::form_factor::plain::IN_PLANE;
 use crate::form_factor::wide::{LANES, Lane, Vectors, squared, towards, vectorised};
-use crate::outline::{NO_SIDE, Outline};
+use crate::geometry::outline::{NO_SIDE, Outline};
+use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 use std::ops::Range;
 

@@ -1,15 +1,13 @@
 //! Down the receivers' hierarchy: what one group of receivers finds out about senders and what stands in between holds for
 //! all that it consists of.
 
-use super::Request;
-use super::candidates::{Candidates, Entry, Verdict};
+use super::frontier::Frontier;
 use super::receivers::{Group, receiver_groups};
+use super::request::Request;
 use super::search::Search;
 use super::viewers::Viewers;
 use crate::monitor::Monitor;
-use crate::world::Node;
 use equilux_formats::RowGroup;
-use std::ops::Range;
 use std::time::{Duration, Instant};
 
 /// Computes the rows of one block.
@@ -35,17 +33,8 @@ pub struct Found {
     pub time: Duration,
 }
 
-/// Senders that a group of receivers may see, and what may stand in between.
-pub struct Frontier<'a> {
-    candidates: Candidates<'a>,
-    senders: Vec<(u32, Range<usize>)>,
-}
-
 /// A frontier is worked out again when the receivers have become this much smaller.
 const SMALLER: f64 = 0.7;
-
-/// Senders stay closed on a frontier up to this share of the receivers' size, or of the distance to them.
-const CLOSED: f64 = 0.5;
 
 impl<'a> Descent<'a> {
     /// All rows.
@@ -98,67 +87,4 @@ impl<'a> Descent<'a> {
             time: start.elapsed(),
         }
     }
-}
-
-impl<'a> Frontier<'a> {
-    /// Everything that sends, behind everything there is.
-    fn all(request: &Request<'a>) -> Self {
-        let (candidates, all) = Candidates::all(request.world);
-        let roots = request.senders.iter().filter_map(|&sender| request.world.root_of(sender));
-        Self { candidates, senders: roots.map(|root| (root as u32, all.clone())).collect() }
-    }
-
-    /// Whether there is nothing to be searched.
-    pub fn is_empty(&self) -> bool {
-        self.senders.is_empty()
-    }
-
-    /// The senders and their lists.
-    pub fn senders(&self) -> impl Iterator<Item = (u32, &[Entry])> {
-        self.senders.iter().map(|(node, list)| (*node, self.candidates.slice(list.clone())))
-    }
-
-    /// What some of the receivers see of it.
-    fn narrowed(&self, request: &Request<'a>, viewers: &Viewers) -> Self {
-        let mut candidates = Candidates::none(request.world);
-        let mut narrowed = Self { candidates: Candidates::none(request.world), senders: vec![] };
-        let mut open: Vec<(u32, Range<usize>)> = Vec::new();
-        for (node, list) in self.senders() {
-            open.push((node, candidates.adopt(list)));
-            while let Some((node, list)) = open.pop() {
-                let sender = &request.world.nodes[node as usize];
-                if viewers.cannot_see(sender, request.world) || is_untouched(request, viewers, node) {
-                    continue;
-                }
-                let Verdict::Between(kept) = candidates.narrow(list, viewers, sender) else { continue };
-                match sender.children {
-                    Some(children) if !stays_closed(sender, viewers) => {
-                        open.extend(children.into_iter().rev().map(|child| (child, kept.clone())));
-                    }
-                    _ => {
-                        let list = narrowed.candidates.adopt(candidates.slice(kept));
-                        narrowed.senders.push((node, list));
-                    }
-                }
-            }
-        }
-        narrowed
-    }
-}
-
-/// Whether nothing that changed can matter to a sender around which nothing can have had an entry: only flat ones have. What
-/// lies inside a flat sender is looked at entry by entry, later.
-fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
-    let (world, Some(revision)) = (request.world, &request.revision) else { return false };
-    let sender = &world.nodes[node as usize];
-    let is_outermost =
-        |node| world.parent_of(node).is_none_or(|p| world.nodes[p as usize].polygon.is_empty());
-    (sender.polygon.is_empty() || is_outermost(node))
-        && !revision.change.anew[world.instance_of_node(node as usize)]
-        && !revision.change.touches(world, viewers, sender)
-}
-
-fn stays_closed(sender: &Node, viewers: &Viewers) -> bool {
-    let size = (sender.high - sender.low).length();
-    size <= CLOSED * viewers.diameter.max(viewers.distance_to(sender))
 }

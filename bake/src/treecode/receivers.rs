@@ -1,7 +1,7 @@
 //! The receivers' side of the search: an instance's elements in a hierarchy, whose leaves are flat clusters of elements
 //! that look for their senders together.
 
-use super::Audience;
+use super::request::Audience;
 use super::viewers::Viewers;
 use crate::form_factor::wide::Points;
 use crate::world::World;

@@ -5,9 +5,9 @@
 //! stays as it is. Senders that were hidden have no entry and may be seen now: so it is the two hierarchies that are walked
 //! down where shafts touch the change, not the entries.
 
-use super::Request;
 use super::viewers::Viewers;
-use crate::shaft::Shaft;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::shaft::Shaft;
 use crate::world::{Node, World};
 use equilux_formats::{Geometry, RowGroup, Rows};
 use glam::{DAffine3, DVec3};
@@ -23,8 +23,7 @@ pub struct Change {
 
 /// Something convex that hides.
 struct Thing {
-    low: DVec3,
-    high: DVec3,
+    bounds: Aabb,
     corners: Vec<DVec3>,
 }
 
@@ -48,7 +47,7 @@ impl Change {
     pub fn add(&mut self, geometry: &Geometry, placement: DAffine3) {
         let alone = World::new([(geometry, placement)]);
         let things = alone.occluders.all.into_iter();
-        self.things.extend(things.map(|o| Thing { low: o.low, high: o.high, corners: o.corners }));
+        self.things.extend(things.map(|o| Thing { bounds: o.bounds, corners: o.corners }));
     }
 
     /// Whether there is none.
@@ -58,7 +57,7 @@ impl Change {
 
     /// Whether light from the sender to the viewers may have changed.
     pub fn touches(&self, world: &World, viewers: &Viewers, sender: &Node) -> bool {
-        let mut shaft = Shaft::between(viewers.bounds, (sender.low, sender.high));
+        let mut shaft = Shaft::between(viewers.bounds, sender.bounds);
         if let Some(flat) = &viewers.flat {
             shaft.bound(viewers.hull[0], -flat.normal);
         }
@@ -66,8 +65,7 @@ impl Change {
             shaft.bound(world.faces[side.face.index()].corners[0], -side.normal);
         }
         let touches = |thing: &Thing| {
-            !shaft.misses_box(thing.low, thing.high)
-                && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
+            !shaft.misses_box(&thing.bounds) && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
         };
         self.things.iter().any(touches)
     }
@@ -80,8 +78,9 @@ impl Revision<'_> {
         self.old.senders() == columns.len() && self.old.senders_seen().all(stays)
     }
 
-    /// The rows of some receivers that see nothing that changed; none if a sender of theirs is gone.
-    pub fn untouched(&self, request: &Request, elements: &Range<usize>) -> Option<RowGroup> {
+    /// The rows of some receivers that see nothing that changed, with columns that count from the node `first_column`; none
+    /// if a sender of theirs is gone.
+    pub fn untouched(&self, first_column: usize, elements: &Range<usize>) -> Option<RowGroup> {
         let group = self.old.group_of(elements.start);
         let (columns, values) = self.old.values_of(group);
         let sender = |&column: &u32| self.senders[column as usize];
@@ -90,7 +89,7 @@ impl Revision<'_> {
         if !senders.is_sorted() {
             return None;
         }
-        let columns = senders.iter().map(|node| node - request.columns.start as u32).collect();
+        let columns = senders.iter().map(|node| node - first_column as u32).collect();
         Some(RowGroup { columns, values, receivers: self.old.receivers_of(group).len() })
     }
 }
@@ -110,12 +109,11 @@ pub struct Revised<'a> {
 impl<'a> Revised<'a> {
     /// The group of some receivers.
     pub fn new(
-        request: &'a Request<'a>,
+        world: &World,
         revision: &'a Revision<'a>,
         viewers: &Viewers,
         elements: &Range<usize>,
     ) -> Self {
-        let world = request.world;
         let group = revision.old.group_of(elements.start);
         let (columns, values) = revision.old.values_of(group);
         let (mut kept, mut dropped) = (HashMap::new(), HashSet::new());

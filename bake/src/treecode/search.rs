@@ -1,11 +1,12 @@
 //! One flat cluster of receivers looking for its senders.
 
 use super::candidates::{Candidates, Verdict};
-use super::descent::Frontier;
+use super::frontier::Frontier;
 use super::receivers::Receivers;
+use super::request::Request;
+use super::resolution::MISSED;
 use super::revision::Revised;
 use super::terminal::Evaluator;
-use super::{MISSED, Request};
 use crate::world::Node;
 use equilux_formats::RowGroup;
 use std::collections::BinaryHeap;
@@ -93,8 +94,9 @@ impl<'a> Search<'a> {
         let receivers =
             Receivers::new(request.world, &request.receivers.elements(request.world)[elements.clone()]);
         let revised = request.revision.as_ref();
-        if let Some(group) =
-            revised.filter(|_| frontier.is_empty()).and_then(|r| r.untouched(request, &elements))
+        if let Some(group) = revised
+            .filter(|_| frontier.is_empty())
+            .and_then(|r| r.untouched(request.columns.start, &elements))
         {
             let width = group.columns.len();
             let sum = |i: usize| group.values[i * width..(i + 1) * width].iter().sum();
@@ -105,7 +107,8 @@ impl<'a> Search<'a> {
                 is_changed: false,
             };
         }
-        let revised = revised.map(|revision| Revised::new(request, revision, &receivers.viewers, &elements));
+        let revised =
+            revised.map(|revision| Revised::new(request.world, revision, &receivers.viewers, &elements));
         let missing = match &revised {
             Some(revised) => {
                 missing.iter().zip(revised.seen()).map(|(m, seen): (&f64, f64)| m - seen).collect()
@@ -211,7 +214,7 @@ impl<'a> Search<'a> {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {
             return f64::INFINITY;
         }
-        let radius = (sender.high - sender.low).length() / 2.0;
+        let radius = sender.bounds.diagonal() / 2.0;
         let distance = self.receivers.viewers.distance_to(sender) + radius;
         if distance <= 2.0 * radius {
             return f64::INFINITY;
@@ -221,7 +224,7 @@ impl<'a> Search<'a> {
 
     /// Size over distance.
     fn slant(&self, sender: &Node) -> f64 {
-        let radius = (sender.high - sender.low).length() / 2.0;
+        let radius = sender.bounds.diagonal() / 2.0;
         radius / (self.receivers.viewers.distance_to(sender) + radius)
     }
 

@@ -3,7 +3,7 @@
 
 use super::pieces::Pieces;
 use super::receivers::Receivers;
-use crate::form_factor::polygon::Polygon;
+use crate::geometry::polygon::Polygon;
 use crate::meshes::{Obstruction, SeenMesh, SeenPolygon};
 use crate::world::{Side, World};
 use equilux_formats::FaceId;

@@ -1,7 +1,8 @@
 //! Receivers as seen by the search: where they are, and which way they look if they all lie on one side of one face.
 
-use crate::form_factor::plain::IN_PLANE;
-use crate::form_factor::polygon::{Polygon, convex_hull};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::polygon::{Polygon, convex_hull};
+use crate::geometry::tolerance::IN_PLANE;
 use crate::world::{Node, World};
 use equilux_formats::{Element, FaceId};
 use glam::DVec3;
@@ -9,7 +10,7 @@ use glam::DVec3;
 /// Some receivers, of which only the hull matters.
 pub struct Viewers {
     /// Box around their points.
-    pub bounds: (DVec3, DVec3),
+    pub bounds: Aabb,
     /// Largest extent.
     pub diameter: f64,
     /// Corners of the convex hull of their points, or of the box.
@@ -33,8 +34,7 @@ impl Viewers {
     pub fn new(world: &World, elements: &[Element]) -> Self {
         let first = &elements[0];
         let points = || elements.iter().map(|e| e.centroid);
-        let low = points().fold(DVec3::INFINITY, DVec3::min);
-        let high = points().fold(DVec3::NEG_INFINITY, DVec3::max);
+        let bounds = Aabb::around(points());
         let same_side = |e: &Element| e.face == first.face && e.normal.dot(first.normal) > 0.0;
         let flat = elements.iter().all(same_side).then(|| Flat {
             normal: first.normal,
@@ -44,21 +44,21 @@ impl Viewers {
         let hull = match flat {
             Some(_) if elements.len() > 4 => convex_hull(points(), first.normal),
             _ if elements.len() <= 4 => points().collect(),
-            _ => box_corners(low, high),
+            _ => bounds.corners(),
         };
-        Self { bounds: (low, high), diameter: (high - low).length(), hull, flat }
+        Self { bounds, diameter: bounds.diagonal(), hull, flat }
     }
 
     /// Distance from the box around the viewers to the box around a sender.
     pub fn distance_to(&self, sender: &Node) -> f64 {
-        let (low, high) = self.bounds;
-        (sender.low - high).max(low - sender.high).max(DVec3::ZERO).length()
+        let (own, other) = (&self.bounds, &sender.bounds);
+        (other.low - own.high).max(own.low - other.high).max(DVec3::ZERO).length()
     }
 
     /// Whether a sender lies wholly below the horizon, in the viewers' plane, or turns its back on all of them.
     pub fn cannot_see(&self, sender: &Node, world: &World) -> bool {
         let origin = self.hull[0];
-        let (centre, half) = ((sender.low + sender.high) * 0.5, (sender.high - sender.low) * 0.5);
+        let (centre, half) = (sender.bounds.centre(), sender.bounds.size() * 0.5);
         let reach = (centre - origin).length() + half.length();
         if let Some(Flat { normal, face, .. }) = self.flat {
             if normal.dot(centre - origin) + normal.abs().dot(half) <= IN_PLANE * reach {
@@ -72,14 +72,4 @@ impl Viewers {
         let corner = world.faces[side.face.index()].corners[0];
         self.hull.iter().all(|&p| side.normal.dot(p - corner) <= IN_PLANE * reach)
     }
-}
-
-/// The corners of a box.
-pub fn box_corners(low: DVec3, high: DVec3) -> Polygon {
-    (0..8)
-        .map(|k| {
-            let pick = |bit: usize, axis: usize| if k >> bit & 1 == 0 { low[axis] } else { high[axis] };
-            DVec3::new(pick(0, 0), pick(1, 1), pick(2, 2))
-        })
-        .collect()
 }

@@ -1,7 +1,7 @@
 //! Which parts cannot see each other whatever stands between them, from their faces alone: light passes only between two
 //! faces that each have something of the other before their front. Conservative: pairs hidden by walls are not found.
 
-use equilux_bake::form_factor::plain::IN_PLANE;
+use equilux_bake::geometry::tolerance::IN_PLANE;
 use equilux_bake::world::World;
 use equilux_formats::FaceId;
 use glam::DVec3;

@@ -1,14 +1,17 @@
 //! Surfaces → elements: every surface is cut into quads or triangles no larger than asked for.
 
-use crate::clusters;
-use crate::cuts;
-use crate::merge::{Merged, merge};
-use crate::planes::FLATNESS;
+pub mod bisect;
+pub mod clusters;
+pub mod cuts;
+pub mod merge;
+
+use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::{
     Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted, Rgb, Surface,
     Tints,
 };
 use glam::DVec3;
+use merge::{Merged, merge};
 use serde::{Deserialize, Serialize};
 
 /// How large elements may be.

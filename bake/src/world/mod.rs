@@ -1,11 +1,15 @@
 //! Elements, clusters and faces of one or many instances in one frame: what form-factor rows are computed in.
 
-use crate::form_factor::polygon::{Polygon, convex_hull};
-use crate::occluders::Occluders;
-use crate::planes;
-use crate::solids::lit_behind;
+pub mod occluders;
+
+use crate::geometry::aabb::Aabb;
+use crate::geometry::planes;
+use crate::geometry::polygon::{Polygon, convex_hull};
+use crate::geometry::solids::lit_behind;
+use crate::geometry::tolerance::SAME_AREA;
 use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
+use occluders::Occluders;
 use std::ops::Range;
 
 /// Placed geometry with what blocks light in it.
@@ -42,10 +46,8 @@ struct Placed {
 /// An element or cluster as a sender.
 #[derive(Debug, Clone)]
 pub struct Node {
-    /// Lowest corner of its box, metres.
-    pub low: DVec3,
-    /// Highest corner of its box, metres.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// Area, m².
     pub area: f64,
     /// What lies inside a cluster.
@@ -239,8 +241,7 @@ fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
 fn element_node(element: &Element) -> Node {
     let corners = element.corners.as_slice();
     Node {
-        low: corners.iter().copied().fold(DVec3::INFINITY, DVec3::min),
-        high: corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max),
+        bounds: Aabb::around(corners),
         area: element.area,
         children: None,
         side: Some(Side { face: element.face, normal: element.normal, material: element.material }),
@@ -255,17 +256,13 @@ fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
     };
     let polygon = side.map_or_else(Polygon::new, |side| union(left, right, side.normal));
     Node {
-        low: left.low.min(right.low),
-        high: left.high.max(right.high),
+        bounds: left.bounds.union(right.bounds),
         area: left.area + right.area,
         children: Some(children),
         side,
         polygon,
     }
 }
-
-/// How far the area of the hull may exceed that of what it is the hull of, relative, to be the same polygon.
-const SAME_AREA: f64 = 1e-9;
 
 /// The union of two polygons in one plane if it is convex, else nothing: their convex hull, if it has their area.
 fn union(left: &Node, right: &Node, normal: DVec3) -> Polygon {

@@ -3,8 +3,10 @@
 //! The cells are convex, so nothing foreign can stand between two points of one of them: a cell's own block of form
 //! factors is exact inside the whole. Debelov & Sevastyanov, §2.
 
-use crate::clusters;
-use crate::form_factor::polygon::{Side, clip};
+use crate::elements::clusters;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::polygon::{Side, clip};
+use crate::geometry::tolerance::ON_CUT;
 use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
 use glam::DVec3;
 
@@ -36,10 +38,6 @@ impl std::str::FromStr for Cut {
     }
 }
 
-/// How far from the plane, relative to the geometry's extent, a corner still counts as on it: no slivers are made
-/// where a plane follows an edge.
-const ON_PLANE: f64 = 1e-9;
-
 /// Cut into `count` cells, each time the cell with the most elements at the median of its longest axis.
 pub fn bisect(whole: Geometry, count: usize) -> Vec<Geometry> {
     let mut cells = vec![whole];
@@ -70,27 +68,24 @@ pub fn cut_all(whole: Geometry, planes: &[Cut]) -> Vec<Geometry> {
 
 /// The plane through the median centroid across the longest axis.
 fn median(geometry: &Geometry) -> Option<Cut> {
-    let (low, high) = bounds(geometry);
-    let extent = high - low;
+    let extent = bounds(geometry).size();
     let axis = (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b]).then(b.cmp(&a)))?;
     let mut places: Vec<f64> = geometry.elements.iter().map(|e| e.centroid[axis]).collect();
     places.sort_by(f64::total_cmp);
     let offset = places[places.len() / 2];
     // Halfway between two rows of a grid cuts no element.
-    let below = places.iter().rev().find(|&&p| p < offset - ON_PLANE * extent[axis]).copied();
+    let below = places.iter().rev().find(|&&p| p < offset - ON_CUT * extent[axis]).copied();
     Some(Cut { axis, offset: below.map_or(offset, |below| (below + offset) / 2.0) })
 }
 
-fn bounds(geometry: &Geometry) -> (DVec3, DVec3) {
-    let corners = geometry.elements.iter().flat_map(|e| e.corners.as_slice());
-    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)))
+fn bounds(geometry: &Geometry) -> Aabb {
+    Aabb::around(geometry.elements.iter().flat_map(|e| e.corners.as_slice()))
 }
 
 /// What lies below and above the plane. Elements and faces across it are clipped; an element in the plane goes to the
 /// side it looks at, and the faces of both sides keep what blocks light there.
 pub fn cut(geometry: &Geometry, plane: Cut) -> [Geometry; 2] {
-    let (low, high) = bounds(geometry);
-    let tolerance = ON_PLANE * (high - low).max_element();
+    let tolerance = ON_CUT * bounds(geometry).size().max_element();
     [-1.0, 1.0].map(|side| {
         let height = |p: DVec3| {
             let height = (p[plane.axis] - plane.offset) * side;
@@ -177,7 +172,7 @@ mod tests {
             }
             let whole: f64 = elements.iter().map(|e| e.area).sum();
             // Corners within a billionth of the plane belong to both sides: edges of up to 12 m each have a strip of it.
-            prop_assert!((sum - whole).abs() <= 12.0 * 6.0 * 4.0 * ON_PLANE * elements.len() as f64, "{sum} of {whole} m²");
+            prop_assert!((sum - whole).abs() <= 12.0 * 6.0 * 4.0 * ON_CUT * elements.len() as f64, "{sum} of {whole} m²");
         }
     }
 }

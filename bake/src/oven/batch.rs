@@ -2,9 +2,9 @@
 
 use crate::gltf_import::{import_scene, is_gltf};
 use crate::monitor::Monitor;
+use crate::oven::prepare::PreparedPart;
+use crate::oven::prepare::{Preparation, prepare};
 use crate::oven::{Baked, Oven};
-use crate::prepare::PreparedPart;
-use crate::prepare::{Preparation, prepare};
 use equilux_formats::{Error, Result, Rows, Store, Swept};
 use serde::Serialize;
 use std::collections::HashSet;

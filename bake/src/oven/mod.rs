@@ -1,19 +1,26 @@
 //! Prepared part → [`BakedPart`]: its own block of form factors and its local equilibrium, from the cache if there.
 
-use crate::cached::{Origin, cached, foreseen};
+pub mod batch;
+pub mod cached;
+pub mod depfile;
+pub mod keys;
+pub mod prepare;
+pub mod stamp;
+
 use crate::elements::{ElementSize, repainted};
 use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
-use crate::prepare::PreparedPart;
 use crate::treecode::{Audience, Request, Resolution, block};
 use crate::world::World;
+use cached::{Origin, cached, foreseen};
 use equilux_formats::{
     BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Instance, Key,
     LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
+use prepare::PreparedPart;
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -4,7 +4,9 @@
 //! A room is a shell around its lamps, too. It is none of these: it looks inwards only, or holds more than lamps, or is
 //! large in its scene.
 
-use crate::shells::{Shell, closed_shells, winding_number};
+use crate::geometry::aabb::Aabb;
+use crate::geometry::shells::{Shell, closed_shells, winding_number};
+use crate::geometry::tolerance::IN_FRONT;
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
 
@@ -20,9 +22,6 @@ pub struct EnclosedLamp {
 /// Winding numbers above this are inside.
 const INSIDE: f64 = 0.99;
 
-/// How far in front of a surface the light that it emits is looked for, in diagonals of its instance's part.
-const IN_FRONT: f64 = 1e-5;
-
 /// A two-sided shell is a room if its diagonal is more than this share of the scene's.
 const LARGE: f64 = 0.5;
 
@@ -32,8 +31,9 @@ pub fn enclosed_lamps(scene: &Scene) -> Vec<EnclosedLamp> {
     let mut found: Vec<Option<(f64, String)>> = vec![None; lamps.len()];
     for (number, instance) in scene.instances.iter().enumerate() {
         let part = &scene.parts[instance.part.index()];
-        let bounds = Bounds::of(placed(part, instance).flat_map(corners));
-        let inside: Vec<usize> = (0..lamps.len()).filter(|&lamp| bounds.hold(&lamps[lamp].points)).collect();
+        let bounds = Aabb::around(placed(part, instance).flat_map(corners));
+        let inside: Vec<usize> =
+            (0..lamps.len()).filter(|&lamp| lamps[lamp].points.iter().all(|&p| bounds.holds(p))).collect();
         if inside.is_empty() {
             continue;
         }
@@ -77,7 +77,7 @@ fn surface_lamp(scene: &Scene, number: usize, instance: &Instance) -> Option<Lam
     let materials = instance.materials(&part.materials);
     let emits = |surface: &Surface| materials[surface.material.index()].emission.iter().any(|&e| e > 0.0);
     let emitting: Vec<u32> = (0..).zip(&part.surfaces).filter(|(_, s)| emits(s)).map(|(at, _)| at).collect();
-    let step = IN_FRONT * Bounds::of(placed(part, instance).flat_map(corners)).diagonal();
+    let step = IN_FRONT * Aabb::around(placed(part, instance).flat_map(corners)).diagonal();
     let points = emitting.iter().flat_map(|&at| {
         let surface = part.surfaces[at as usize].placed(instance.placement);
         let (middle, normal) = (surface.corners.centroid(), surface.corners.double_area_vector().normalize());
@@ -96,7 +96,7 @@ fn surface_lamp(scene: &Scene, number: usize, instance: &Instance) -> Option<Lam
 struct Enclosure {
     /// Its polygons, looking outwards, scene coordinates.
     polygons: Vec<Surface>,
-    bounds: Bounds,
+    bounds: Aabb,
     /// The instance, and the numbers of the surfaces.
     instance: usize,
     surfaces: Vec<u32>,
@@ -120,7 +120,7 @@ fn enclosures(part: &Part, instance: &Instance, number: usize) -> Vec<Enclosure>
             if inward { surface.flipped() } else { surface }.placed(instance.placement)
         });
         let polygons: Vec<Surface> = outward.collect();
-        let bounds = Bounds::of(polygons.iter().flat_map(|s| s.corners.as_slice().to_vec()));
+        let bounds = Aabb::around(polygons.iter().flat_map(|s| s.corners.as_slice().to_vec()));
         let is_lit_inside = shell.polygons.iter().any(|&surface| is_double_sided(surface as usize));
         Enclosure { polygons, bounds, instance: number, surfaces: shell.polygons, is_lit_inside }
     };
@@ -134,8 +134,7 @@ impl Enclosure {
             *instance == self.instance && surfaces.iter().any(|at| self.surfaces.binary_search(at).is_ok())
         });
         !shines_itself
-            && self.bounds.hold(&lamp.points)
-            && lamp.points.iter().all(|&point| self.holds(point))
+            && lamp.points.iter().all(|&point| self.bounds.holds(point) && self.holds(point))
             && !(self.is_lit_inside && self.is_room(lamp, scene))
     }
 
@@ -147,7 +146,7 @@ impl Enclosure {
     /// Whether it is large, or holds surfaces that neither emit nor belong to the lamp.
     fn is_room(&self, lamp: &Lamp, scene: &Scene) -> bool {
         let whole =
-            Bounds::of(scene.instances.iter().flat_map(|instance| {
+            Aabb::around(scene.instances.iter().flat_map(|instance| {
                 placed(&scene.parts[instance.part.index()], instance).flat_map(corners)
             }));
         let own = lamp.surfaces.as_ref().map(|(instance, _)| *instance);
@@ -168,30 +167,9 @@ impl Enclosure {
             let middle = surface.corners.centroid();
             !is_own
                 && materials[surface.material.index()].emission == [0.0; 3]
-                && self.bounds.hold(&[middle])
+                && self.bounds.holds(middle)
                 && self.holds(middle)
         })
-    }
-}
-
-/// A box around points.
-struct Bounds {
-    low: DVec3,
-    high: DVec3,
-}
-
-impl Bounds {
-    fn of(points: impl Iterator<Item = DVec3>) -> Self {
-        let empty = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
-        points.fold(empty, |all, p| Self { low: all.low.min(p), high: all.high.max(p) })
-    }
-
-    fn hold(&self, points: &[DVec3]) -> bool {
-        points.iter().all(|p| p.cmpge(self.low).all() && p.cmple(self.high).all())
-    }
-
-    fn diagonal(&self) -> f64 {
-        (self.high - self.low).length()
     }
 }
 

@@ -3,30 +3,23 @@
 //! A solid is a shell of faces of which the side that has elements looks outwards. A room, whose faces look inwards, is
 //! none; nor is what is open somewhere, or what shines or reflects on both sides.
 
-use crate::disjoint_sets::DisjointSets;
-use crate::shells::{
+use crate::geometry::aabb::Aabb;
+use crate::geometry::disjoint_sets::DisjointSets;
+use crate::geometry::shells::{
     closed_shells, groups_by_edges, is_balanced, point_key, triangles, volume_and_area, winding_number,
 };
+use crate::geometry::tolerance::{CLOSED, WOUND};
 use equilux_formats::{Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
 
 /// A closed shell of faces that look outwards.
 pub struct Solid {
-    /// Lowest corner of its box.
-    pub low: DVec3,
-    /// Highest corner of its box.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// Its faces, sorted.
     pub faces: Vec<u32>,
 }
-
-/// How far the sum of a closed shell's areas, as vectors, may be from zero, relative to their sum as numbers: corners that
-/// several faces share are equal to the bit, but for those that lie on another's edge.
-const CLOSED: f64 = 1e-6;
-
-/// How far from 1 the winding number of a point inside may be; on a face it is ½.
-const AROUND: f64 = 1e-3;
 
 /// The solids of a part.
 pub fn solids(geometry: &Geometry) -> Vec<Solid> {
@@ -38,19 +31,18 @@ pub fn solids(geometry: &Geometry) -> Vec<Solid> {
 
 impl Solid {
     fn of(shell: Vec<u32>, faces: &[Face]) -> Self {
-        let corners = || shell.iter().flat_map(|&f| faces[f as usize].corners.iter().copied());
-        let low = corners().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
-        Self { low, high, faces: shell }
+        let bounds = Aabb::around(shell.iter().flat_map(|&f| &faces[f as usize].corners));
+        Self { bounds, faces: shell }
     }
 
     /// Whether `point` lies inside, deeper than `depth` below every face. `faces` are those of the solid's part.
     pub fn holds(&self, point: DVec3, depth: f64, faces: &[Face]) -> bool {
-        let in_box = (point - depth).cmpgt(self.low).all() && (point + depth).cmplt(self.high).all();
+        let in_box =
+            (point - depth).cmpgt(self.bounds.low).all() && (point + depth).cmplt(self.bounds.high).all();
         let own = || self.faces.iter().map(|&face| faces[face as usize].corners.as_slice());
         in_box
             && own().all(|corners| distance(point, corners) > depth)
-            && winding_number(point, own()) > 1.0 - AROUND
+            && winding_number(point, own()) > 1.0 - WOUND
     }
 }
 

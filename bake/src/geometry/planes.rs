@@ -1,15 +1,12 @@
 //! Which faces lie in one plane. Such faces neither light nor hide one another, whatever rounding says.
 
+pub use super::tolerance::FLATNESS;
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
 
 /// Normals are sorted into cubes of this side; neighbours are searched too.
 const CELL: f64 = 1.0 / 64.0;
-
-/// How far, relative to the largest coordinate of the faces concerned, a corner may lie off its plane: two units in the last
-/// place of the f32 numbers that glTF stores.
-pub const FLATNESS: f64 = 2.0 * f32::EPSILON as f64;
 
 /// A plane number for every face; faces get the same number if all corners of the one lie within the flatness
 /// tolerance of the plane of the other, on either side. Larger faces set the planes: theirs are known best.

@@ -3,6 +3,7 @@
 //! Planes through corners of the two boxes bound the boxes' convex hull from outside (Haines & Wallace 1994), together
 //! with the receivers' horizon and the plane of a flat sender. Conservative: what is called outside is outside.
 
+use super::aabb::Aabb;
 use glam::DVec3;
 
 /// Planes of a region: four bridges for each pair of axes, then the horizon and the sender's plane, and two to spare.
@@ -22,29 +23,24 @@ const BRIDGES: [(usize, usize, f64, f64); 12] = {
 
 /// A convex region around everything between two boxes.
 pub struct Shaft {
-    low: DVec3,
-    high: DVec3,
+    around: Aabb,
     /// Outward normals by coordinate, and offsets: outside is where n·p ≥ d. Unused ones have no outside.
     normals: [[f64; PLANES]; 3],
     offsets: [f64; PLANES],
     count: usize,
 }
 
-/// A box by its lowest and highest corner.
-pub type Bounds = (DVec3, DVec3);
-
 impl Shaft {
     /// The shaft between two boxes.
     #[inline(always)]
-    pub fn between(a: Bounds, b: Bounds) -> Self {
+    pub fn between(a: Aabb, b: Aabb) -> Self {
         let mut shaft = Self {
-            low: a.0.min(b.0),
-            high: a.1.max(b.1),
+            around: a.union(b),
             normals: [[0.0; PLANES]; 3],
             offsets: [f64::INFINITY; PLANES],
             count: BRIDGES.len(),
         };
-        let (a, b) = ([a.0.to_array(), a.1.to_array()], [b.0.to_array(), b.1.to_array()]);
+        let (a, b) = ([a.low, a.high].map(|p| p.to_array()), [b.low, b.high].map(|p| p.to_array()));
         for (k, &(u, v, up_u, up_v)) in BRIDGES.iter().enumerate() {
             shaft.bridge(k, a, b, (u, up_u), (v, up_v));
         }
@@ -85,14 +81,15 @@ impl Shaft {
 
     /// Whether a box lies outside.
     #[inline(always)]
-    pub fn misses_box(&self, low: DVec3, high: DVec3) -> bool {
-        if low.cmpge(self.high).any() || high.cmple(self.low).any() {
+    pub fn misses_box(&self, &Aabb { low, high }: &Aabb) -> bool {
+        let around = &self.around;
+        if low.cmpge(around.high).any() || high.cmple(around.low).any() {
             // A flat thing in a side of the region only touches it, unless the region itself is flat there.
-            let flat = self.low.cmpeq(self.high);
-            let apart = (low.cmpge(self.high) & !flat).any()
-                || (high.cmple(self.low) & !flat).any()
-                || low.cmpgt(self.high).any()
-                || high.cmplt(self.low).any();
+            let flat = around.low.cmpeq(around.high);
+            let apart = (low.cmpge(around.high) & !flat).any()
+                || (high.cmple(around.low) & !flat).any()
+                || low.cmpgt(around.high).any()
+                || high.cmplt(around.low).any();
             if apart {
                 return true;
             }

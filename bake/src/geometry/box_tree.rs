@@ -3,10 +3,9 @@
 //! obvhs builds the hierarchies in f32; boxes are then taken anew in f64, and exact clipping decides everything. No
 //! type of obvhs leaves this module.
 
-pub mod rays;
-
+use super::aabb::Aabb;
 use glam::{DVec3, Vec3A};
-use obvhs::aabb::Aabb;
+use obvhs::aabb::Aabb as Box32;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
@@ -20,10 +19,8 @@ pub struct BoxTree {
 /// A box and what it holds.
 #[derive(Debug, Clone, Copy)]
 pub struct BoxNode {
-    /// Lowest corner.
-    pub low: DVec3,
-    /// Highest corner.
-    pub high: DVec3,
+    /// The box.
+    pub bounds: Aabb,
     first: u32,
     /// Number of things in a leaf; none in an inner node, whose two children stand at `first`.
     count: u32,
@@ -38,15 +35,14 @@ pub enum Inside<'a> {
 }
 
 impl BoxTree {
-    /// The hierarchy of things with these boxes (lowest and highest corner).
-    pub fn new(boxes: &[(DVec3, DVec3)]) -> Self {
-        let (centre, padding) = frame(boxes.iter().flat_map(|&(low, high)| [low, high]));
+    /// The hierarchy of things with these boxes.
+    pub fn new(boxes: &[Aabb]) -> Self {
+        let (centre, padding) = frame(boxes.iter().flat_map(|b| [b.low, b.high]));
         let rounded: Vec<Box3> =
-            boxes.iter().map(|&(low, high)| Box3(bounds(&[low, high], centre, padding))).collect();
+            boxes.iter().map(|b| Box3(bounds(&[b.low, b.high], centre, padding))).collect();
         let Some(bvh) = build(&rounded) else { return Self { nodes: vec![], things: vec![] } };
         let node = |n: &obvhs::bvh2::node::Bvh2Node| BoxNode {
-            low: DVec3::INFINITY,
-            high: DVec3::NEG_INFINITY,
+            bounds: Aabb::EMPTY,
             first: n.first_index,
             count: n.prim_count,
         };
@@ -76,12 +72,12 @@ impl BoxTree {
         }
     }
 
-    /// The things in boxes that a box from `low` to `high` meets; a leaf's things come together.
-    pub fn meeting(&self, low: DVec3, high: DVec3) -> Vec<u32> {
+    /// The things in boxes that `sought` meets; a leaf's things come together.
+    pub fn meeting(&self, sought: Aabb) -> Vec<u32> {
         let (mut found, mut open) = (Vec::new(), Vec::from_iter(self.root()));
         while let Some(index) = open.pop() {
             let node = self.node(index);
-            if node.low.cmpgt(high).any() || node.high.cmplt(low).any() {
+            if !node.bounds.meets(&sought) {
                 continue;
             }
             match self.inside(index) {
@@ -92,44 +88,46 @@ impl BoxTree {
         found
     }
 
-    fn fit(&mut self, index: usize, boxes: &[(DVec3, DVec3)]) -> (DVec3, DVec3) {
-        let parts: Vec<(DVec3, DVec3)> = match self.inside(index) {
-            Inside::Things(things) => things.iter().map(|&thing| boxes[thing as usize]).collect(),
-            Inside::Boxes(inner) => inner.map(|i| self.fit(i, boxes)).to_vec(),
+    fn fit(&mut self, index: usize, boxes: &[Aabb]) -> Aabb {
+        let bounds = match self.inside(index) {
+            Inside::Things(things) => {
+                things.iter().map(|&thing| boxes[thing as usize]).fold(Aabb::EMPTY, Aabb::union)
+            }
+            Inside::Boxes(inner) => {
+                inner.map(|i| self.fit(i, boxes)).into_iter().fold(Aabb::EMPTY, Aabb::union)
+            }
         };
-        let (low, high) = parts
-            .into_iter()
-            .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), (low, high)| (l.min(low), h.max(high)));
-        let node = &mut self.nodes[index];
-        (node.low, node.high) = (low, high);
-        (low, high)
+        self.nodes[index].bounds = bounds;
+        bounds
     }
 }
-struct Box3(Aabb);
+
+/// A box in f32.
+pub(crate) struct Box3(pub Box32);
 
 impl Boundable for Box3 {
-    fn aabb(&self) -> Aabb {
+    fn aabb(&self) -> Box32 {
         self.0
     }
 }
 
-fn build(boxes: &[Box3]) -> Option<Bvh2> {
+pub(crate) fn build(boxes: &[Box3]) -> Option<Bvh2> {
     let mut time = Duration::ZERO;
     (!boxes.is_empty()).then(|| build_bvh2(boxes, BvhBuildParams::medium_build(), &mut time))
 }
 
 /// The centre of all points, and the padding that covers the rounding of their f32 images around it: four units in
 /// the last place of the largest coordinate.
-fn frame(points: impl Iterator<Item = DVec3> + Clone) -> (DVec3, f32) {
-    let (low, high) = points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-    if low.x > high.x {
+pub(crate) fn frame(points: impl Iterator<Item = DVec3> + Clone) -> (DVec3, f32) {
+    let around = Aabb::around(points);
+    if around.is_empty() {
         return (DVec3::ZERO, 0.0);
     }
-    ((low + high) / 2.0, ((high - low).max_element() * 4.0) as f32 * f32::EPSILON)
+    (around.centre(), (around.size().max_element() * 4.0) as f32 * f32::EPSILON)
 }
 
-fn bounds(points: &[DVec3], centre: DVec3, padding: f32) -> Aabb {
+pub(crate) fn bounds(points: &[DVec3], centre: DVec3, padding: f32) -> Box32 {
     let local: Vec<Vec3A> = points.iter().map(|&p| (p - centre).as_vec3a()).collect();
-    let around = Aabb::from_points(&local);
-    Aabb::new(around.min - padding, around.max + padding)
+    let around = Box32::from_points(&local);
+    Box32::new(around.min - padding, around.max + padding)
 }

@@ -4,6 +4,7 @@
 //! asked for, and as many as the square of the length: a sliver is cut into rows across its two long edges, each row into
 //! as many pieces as it is wide. No piece has more than four corners; their edges need not have equal ends.
 
+use crate::geometry::tolerance::SAME_LENGTH;
 use equilux_formats::Corners;
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
@@ -12,9 +13,6 @@ use smallvec::{SmallVec, smallvec};
 const SLIVER: f64 = 4.0;
 /// A short edge may be so many times as long as the triangle is high for rows along it; else they would lean too much.
 const LEANING: f64 = 2.0;
-/// Lengths that differ by less than this, relative, are equal: the same shape in other units is cut in the same way.
-const ROUNDING: f64 = 1e-6;
-
 /// How a triangle or quad, or a piece of one, is cut.
 enum Pattern {
     /// So many quads along the first and along the second edge. They share corners to the bit.
@@ -98,12 +96,12 @@ fn of_triangle([a, b, c]: [DVec3; 3], size: f64) -> SmallVec<[Pattern; 4]> {
 
 /// Whether one length or area is larger than another by more than rounding.
 fn exceeds(one: f64, other: f64) -> bool {
-    one > other * (1.0 + ROUNDING)
+    one > other * (1.0 + SAME_LENGTH)
 }
 
 /// How many pieces an edge needs; an edge that is longer by rounding only does not need another.
 fn pieces(length: f64, size: f64) -> usize {
-    ((length / size) * (1.0 - ROUNDING)).ceil().max(1.0) as usize
+    ((length / size) * (1.0 - SAME_LENGTH)).ceil().max(1.0) as usize
 }
 
 fn total(patterns: &[Pattern]) -> u128 {
@@ -237,7 +235,7 @@ mod tests {
                 let all = |point: DVec3, slack: f64| (0..corners.len()).all(|i| side(i, point) >= -slack);
                 // Coordinates up to 25 m: rounding of f64.
                 assert!(corners.iter().all(|&corner| all(corner, 1e-13)), "not convex: {piece:?}");
-                assert!(edges(&piece).all(|edge| edge <= size * (1.0 + 2.0 * ROUNDING)), "{piece:?}");
+                assert!(edges(&piece).all(|edge| edge <= size * (1.0 + 2.0 * SAME_LENGTH)), "{piece:?}");
                 holding += usize::from(all(place, 1e-13));
             });
             prop_assert_eq!(number as u128, count(&whole, size));

@@ -1,9 +1,10 @@
 //! Scene → parts ready to bake: elements of the chosen size, or cells that planes cut out of the whole scene.
 
-use crate::bisect::{Cut, bisect, cut_all};
-use crate::clusters;
+use crate::elements::bisect::{Cut, bisect, cut_all};
+use crate::elements::clusters;
 use crate::elements::{ElementSize, Panels, area, default_size, optics};
 use crate::equilibrium::default_solver;
+use crate::geometry::aabb::Aabb;
 use crate::textures::tints;
 use crate::treecode::Resolution;
 use crate::world::World;
@@ -255,8 +256,7 @@ fn number_of(materials: &mut Vec<Material>, material: Material) -> MaterialId {
 
 /// The geometry moved so that its lowest corner is the origin, and where that corner was.
 fn recentred(geometry: Geometry) -> (Geometry, DVec3) {
-    let corners = geometry.elements.iter().flat_map(|e| e.corners.as_slice());
-    let origin = corners.fold(DVec3::INFINITY, |low, &p| low.min(p));
+    let origin = Aabb::around(geometry.elements.iter().flat_map(|e| e.corners.as_slice())).low;
     let element = |e: &Element| Element::new(e.corners.map(|p| p - origin), e.material, FaceId(e.face.0));
     let face = |f: &Face| Face::new(f.corners.iter().map(|&p| p - origin).collect());
     let moved = Geometry {

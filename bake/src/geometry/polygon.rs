@@ -3,7 +3,7 @@
 //! All points are relative to the receiver's collocation point, so every plane of a pyramid passes through the
 //! origin and is given by its normal alone.
 
-use super::plain::IN_PLANE;
+use super::tolerance::{CUT_ROUNDING, IN_PLANE, STRAIGHT};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
@@ -61,9 +61,6 @@ pub fn part(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> [Option<Polyg
     }
 }
 
-/// What a corner that was cut is off by, relative to its distance from the origin: the roundings of a few sums and products.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
 /// Whether a planar convex polygon is no higher over its longest edge than its corners are rounded by.
 fn is_edge(polygon: &[DVec3]) -> bool {
     let origin = polygon[0];
@@ -75,7 +72,7 @@ fn is_edge(polygon: &[DVec3]) -> bool {
         reach2 = reach2.max(to.length_squared());
         from = to;
     }
-    double_area.length_squared() <= ROUNDING * ROUNDING * longest2 * reach2
+    double_area.length_squared() <= CUT_ROUNDING * CUT_ROUNDING * longest2 * reach2
 }
 
 /// The pyramid of directions that a convex occluder hides from the origin.
@@ -221,7 +218,7 @@ pub fn convex_hull(points: impl Iterator<Item = DVec3>, normal: DVec3) -> Polygo
     while hull.len() > 2 && next < hull.len() {
         let count = hull.len();
         let corner = [hull[(next + count - 1) % count], hull[next]];
-        if turns_left(&corner, hull[(next + 1) % count], 1e-9) {
+        if turns_left(&corner, hull[(next + 1) % count], STRAIGHT) {
             next += 1;
         } else {
             hull.remove(next);
@@ -275,7 +272,7 @@ mod tests {
                 }
             }
             // Coordinates up to 14 m, edges up to 28 m: what an edge has for an area.
-            let rounding = 14.0 * 28.0 * ROUNDING;
+            let rounding = 14.0 * 28.0 * CUT_ROUNDING;
             prop_assert!((sum - area(&triangle)).abs() <= 2.0 * rounding, "{} of {}", sum, area(&triangle));
         }
     }

@@ -2,13 +2,12 @@
 //! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
 //! face sides themselves are halved by place.
 
-use crate::visibility::rays::RayIndex;
+use crate::geometry::aabb::Aabb;
+use crate::geometry::tolerance::SAME_LINE;
+use crate::rays::RayIndex;
 use equilux_formats::{ClusterTree, Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
-
-/// Steps between places that are smaller than this, relative to the extent, are rounding and no grid line.
-const SAME_LINE: f64 = 1e-6;
 
 /// An element with something before it nearer than this share of its face's extent is covered, and clusters with others
 /// that are.
@@ -47,16 +46,15 @@ struct Side {
 
 fn face_sides(elements: &[Element]) -> Vec<Side> {
     let mut fronts: HashMap<u32, DVec3> = HashMap::new();
-    let mut boxes: HashMap<u32, (DVec3, DVec3)> = HashMap::new();
+    let mut boxes: HashMap<u32, Aabb> = HashMap::new();
     for Element { face, normal, centroid, .. } in elements {
         fronts.entry(face.0).or_insert(*normal);
-        let (low, high) = boxes.entry(face.0).or_insert((*centroid, *centroid));
-        (*low, *high) = (low.min(*centroid), high.max(*centroid));
+        let around = boxes.entry(face.0).or_insert(Aabb::EMPTY);
+        *around = around.union(Aabb::around([centroid]));
     }
     let index = RayIndex::new(elements);
     let is_covered = |e: &Element| {
-        let (low, high) = boxes[&e.face.0];
-        let near = COVERED * (high - low).length();
+        let near = COVERED * boxes[&e.face.0].diagonal();
         index.first_hit(e.centroid, e.normal).is_some_and(|hit| hit.distance < near)
     };
     // What shares a face need not share its light: a lamp let into a ceiling, the floor beneath a crate.

@@ -7,9 +7,10 @@
 //! harms nobody.
 
 use crate::elements::repainted;
+use crate::geometry::rounded_placement::RoundedPlacement;
 use crate::gltf_import::import_scene;
+use crate::oven::prepare::{Preparation, Prepared, prepare};
 use crate::oven::{KERNEL_VERSION, geometry_manifest, light_manifest};
-use crate::prepare::{Preparation, Prepared, prepare};
 use crate::treecode::Resolution;
 use equilux_formats::{Instance, Key, Manifest, Result, Store, Swept};
 use glam::DAffine3;
@@ -79,49 +80,26 @@ pub struct Seen {
     pub part: Key,
     /// The number of its senders.
     pub senders: usize,
-    /// Its placement as seen from the one, in steps of 2^`exponent`.
-    steps: [i64; 12],
-    exponent: i32,
+    /// Its placement as seen from the one.
+    placement: RoundedPlacement,
 }
-
-/// Steps in which placements are told, in powers of two below their largest number: rounding does not make another place.
-const FINE: i32 = 40;
 
 impl Seen {
     /// A part at a place.
     pub fn new(part: Known, placement: DAffine3) -> Self {
-        let (steps, exponent) = in_steps(placement);
-        Self { part: part.key, senders: part.senders, steps, exponent }
+        Self { part: part.key, senders: part.senders, placement: placement.into() }
     }
 
     /// Where it stands, as seen from the one.
     pub fn placement(&self) -> DAffine3 {
-        from_steps(self.steps, self.exponent)
+        self.placement.into()
     }
-}
-
-/// A placement without what rounding adds to it.
-pub(crate) fn rounded(placement: DAffine3) -> DAffine3 {
-    let (steps, exponent) = in_steps(placement);
-    from_steps(steps, exponent)
-}
-
-/// A placement in steps of 2^exponent.
-fn in_steps(placement: DAffine3) -> ([i64; 12], i32) {
-    let numbers = placement.to_cols_array();
-    let most = numbers.iter().fold(f64::MIN_POSITIVE, |most: f64, n| most.max(n.abs()));
-    let exponent = most.log2().ceil() as i32 - FINE;
-    (numbers.map(|n| (n / 2f64.powi(exponent)).round() as i64), exponent)
-}
-
-fn from_steps(steps: [i64; 12], exponent: i32) -> DAffine3 {
-    DAffine3::from_cols_array(&steps.map(|step| step as f64 * 2f64.powi(exponent)))
 }
 
 impl std::fmt::Display for Seen {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} {} {}", self.part, self.senders, self.exponent)?;
-        self.steps.iter().try_for_each(|step| write!(f, " {step}"))
+        write!(f, "{} {} {}", self.part, self.senders, self.placement.exponent)?;
+        self.placement.steps.iter().try_for_each(|step| write!(f, " {step}"))
     }
 }
 
@@ -139,7 +117,7 @@ impl std::str::FromStr for Seen {
         for step in &mut steps {
             *step = next()?.parse().map_err(|_| ())?;
         }
-        Ok(Self { part, senders, steps, exponent })
+        Ok(Self { part, senders, placement: RoundedPlacement { steps, exponent } })
     }
 }
 

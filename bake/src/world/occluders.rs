@@ -4,11 +4,11 @@
 //! Seen from a point outside, a convex solid hides exactly the pyramid over its silhouette: the loop of edges between
 //! faces that look at the point and faces that do not. What a mesh hides is told by [`crate::meshes`].
 
+use crate::geometry::aabb::Aabb;
+use crate::geometry::box_tree::{BoxTree, Inside};
+use crate::geometry::outline::{Edge, Outline, Plane};
+use crate::geometry::tolerance::FLATNESS;
 use crate::meshes::Mesh;
-use crate::outline::{Edge, Outline, Plane};
-use crate::planes::FLATNESS;
-use crate::treecode::box_corners;
-use crate::visibility::{BoxTree, Inside};
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -25,10 +25,8 @@ pub struct Occluders {
 
 /// A face, or faces that hide as a whole.
 pub struct Occluder {
-    /// Lowest corner of its box.
-    pub low: DVec3,
-    /// Highest corner of its box.
-    pub high: DVec3,
+    /// The box around it.
+    pub bounds: Aabb,
     /// Diagonal of its box.
     pub diameter: f64,
     /// Its corners; of a mesh, those of its box.
@@ -98,22 +96,18 @@ impl Occluders {
     }
 
     /// Whether `found` is true of any occluder whose box `misses` does not rule out; both are given boxes or what is in them.
-    pub fn any(
-        &self,
-        misses: impl Fn(DVec3, DVec3) -> bool,
-        mut found: impl FnMut(&Occluder) -> bool,
-    ) -> bool {
+    pub fn any(&self, misses: impl Fn(&Aabb) -> bool, mut found: impl FnMut(&Occluder) -> bool) -> bool {
         let mut open: Vec<usize> = self.tree.root().into_iter().collect();
         while let Some(index) = open.pop() {
             let node = self.tree.node(index);
-            if misses(node.low, node.high) {
+            if misses(&node.bounds) {
                 continue;
             }
             match self.tree.inside(index) {
                 Inside::Boxes(pair) => open.extend(pair),
                 Inside::Things(things) => {
                     let mut things = things.iter().map(|&thing| &self.all[thing as usize]);
-                    if things.any(|occluder| !misses(occluder.low, occluder.high) && found(occluder)) {
+                    if things.any(|occluder| !misses(&occluder.bounds) && found(occluder)) {
                         return true;
                     }
                 }
@@ -133,9 +127,8 @@ impl Occluders {
 
 impl Occluder {
     fn new(corners: Vec<DVec3>, faces: Vec<u32>, shape: Shape) -> Self {
-        let low = corners.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        Self { low, high, diameter: (high - low).length(), corners, faces, shape }
+        let bounds = Aabb::around(&corners);
+        Self { bounds, diameter: bounds.diagonal(), corners, faces, shape }
     }
 
     fn face(number: u32, Face { corners, normal }: &Face) -> Self {
@@ -145,7 +138,7 @@ impl Occluder {
     fn mesh(group: Vec<u32>, faces: &[Face]) -> Self {
         let mesh = Mesh::from_faces(&group, faces);
         let inside: Vec<Self> = group.iter().map(|&f| Self::face(f, &faces[f as usize])).collect();
-        let corners = box_corners(mesh.low, mesh.high).to_vec();
+        let corners = mesh.bounds.corners().to_vec();
         Self::new(
             corners,
             group,
@@ -155,7 +148,7 @@ impl Occluder {
 }
 
 fn tree(occluders: &[Occluder]) -> BoxTree {
-    BoxTree::new(&occluders.iter().map(|o| (o.low, o.high)).collect::<Vec<_>>())
+    BoxTree::new(&occluders.iter().map(|o| o.bounds).collect::<Vec<_>>())
 }
 
 /// A point as a key: equal to the bit.

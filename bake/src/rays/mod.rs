@@ -3,7 +3,8 @@
 //! The intersection is computed in f64 against the element's own polygon; a point on a shared edge belongs to both
 //! elements, so no ray slips through.
 
-use super::{Box3, bounds, build, frame};
+use crate::geometry::box_tree::{Box3, bounds, build, frame};
+use crate::geometry::tolerance::{SAME_HIT, TRIPLE_PRODUCT};
 use equilux_formats::Element;
 use glam::DVec3;
 use obvhs::bvh2::Bvh2;
@@ -79,11 +80,11 @@ impl<'a> RayIndex<'a> {
         hits.into_inner()
     }
 
-    /// Whether nothing stands between two points, the ends themselves (within 1e-9 of the distance) left out.
+    /// Whether nothing stands between two points, the ends themselves (within [`SAME_HIT`] of the distance) left out.
     pub fn sees(&self, from: DVec3, to: DVec3) -> bool {
         let direction = to - from;
-        let start = from + direction * 1e-9;
-        self.first_hit(start, direction).is_none_or(|hit| hit.distance >= 1.0 - 2e-9)
+        let start = from + direction * SAME_HIT;
+        self.first_hit(start, direction).is_none_or(|hit| hit.distance >= 1.0 - 2.0 * SAME_HIT)
     }
 
     fn intersect(&self, index: usize, origin: DVec3, direction: DVec3) -> Option<Hit> {
@@ -98,18 +99,15 @@ impl<'a> RayIndex<'a> {
             let (a, b) = (corners[i] - origin, corners[(i + 1) % corners.len()] - origin);
             // Both elements that share the edge get the same number, but the edges that meet in a corner each round
             // their own way: without this much tolerance a ray at the corner might pass outside of all of them.
-            let rounding = ROUNDING * a.length() * b.length() * direction.length();
+            let rounding = TRIPLE_PRODUCT * a.length() * b.length() * direction.length();
             a.cross(b).dot(direction) * approach.signum() >= -rounding
         });
         inside.then_some(Hit { element: index, distance, front: approach < 0.0 })
     }
 }
 
-/// What a triple product may err by, relative to the lengths of its vectors: about eight roundings.
-const ROUNDING: f64 = 1e-15;
-
 fn closer(hit: &Hit, than: &Hit) -> bool {
-    let tie = (hit.distance - than.distance).abs() <= 1e-9 * than.distance;
+    let tie = (hit.distance - than.distance).abs() <= SAME_HIT * than.distance;
     if tie { hit.front && !than.front } else { hit.distance < than.distance }
 }
 

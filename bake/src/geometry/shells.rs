@@ -4,9 +4,10 @@
 //! polygon depends on it, one winding is carried across the edges. How often a shell goes around a point is the sum of the
 //! solid angles of its polygons over 4π: 1 inside, 0 outside, whatever its shape (Jacobson, Kavan & Sorkine-Hornung 2013).
 
-use crate::disjoint_sets::DisjointSets;
-use crate::form_factor::polygon::Polygon;
-use crate::form_factor::solid_angle::solid_angle;
+use crate::geometry::disjoint_sets::DisjointSets;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::solid_angle::solid_angle;
+use crate::geometry::tolerance::NO_VOLUME;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -19,9 +20,6 @@ pub struct Shell {
     /// For each of them, whether it looks into the shell as it is wound.
     pub inward: Vec<bool>,
 }
-
-/// A volume below this share of the area to the power of 3/2 is none: a sheet with two sides, for instance.
-const FLAT: f64 = 1e-9;
 
 /// A point as a key: equal to the bit. Adding 0 makes −0 and 0 one key.
 pub(crate) type PointKey = [u64; 3];
@@ -72,7 +70,7 @@ fn shell(group: &[usize], polygons: &[&[DVec3]], either_way: impl Fn(usize) -> b
     };
     let wound = group.iter().zip(&turned).map(|(&polygon, &turned)| (polygons[polygon], turned));
     let (volume, area) = volume_and_area(wound);
-    if volume.abs() <= FLAT * area.powf(1.5) {
+    if volume.abs() <= NO_VOLUME * area.powf(1.5) {
         return None;
     }
     let inward = turned.iter().map(|&turned| turned != (volume < 0.0)).collect();

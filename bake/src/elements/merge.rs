@@ -3,7 +3,8 @@
 //! In each plane polygons first grow into strips along one direction, then in any. A regular grid so becomes one
 //! rectangle, a wall with a door three or four.
 
-use crate::planes::{self, FLATNESS};
+use crate::geometry::planes;
+use crate::geometry::tolerance::{FLATNESS, LONGER};
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
@@ -39,7 +40,7 @@ fn strip_directions(polygons: &[Face], planes: &[u32]) -> Vec<DVec3> {
     for (polygon, &plane) in polygons.iter().zip(planes) {
         for (i, &a) in polygon.corners.iter().enumerate() {
             let edge = polygon.corners[(i + 1) % polygon.corners.len()] - a;
-            if edge.length_squared() > longest[plane as usize].length_squared() * (1.0 + 1e-9) {
+            if edge.length_squared() > longest[plane as usize].length_squared() * (1.0 + LONGER) {
                 longest[plane as usize] = edge;
             }
         }

@@ -1,0 +1,14 @@
+//! Geometry that knows nothing of light: polygons and their cuts, planes, outlines, shells, boxes and hierarchies of boxes.
+
+pub mod aabb;
+pub mod box_tree;
+pub mod disjoint_sets;
+pub mod outline;
+pub mod planes;
+pub mod polygon;
+pub mod rounded_placement;
+pub mod shaft;
+pub mod shells;
+pub mod solid_angle;
+pub mod solids;
+pub mod tolerance;
