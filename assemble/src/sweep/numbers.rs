@@ -11,12 +11,13 @@ pub fn two_digits(value: f64) -> f64 {
     if value.abs() >= 100.0 { value.round() } else { rounded }
 }
 
-/// A duration in seconds with two or three significant digits: `1.20 s`, `35.1 ms`.
+/// A duration in seconds with two or three significant digits: `1.20 s`, `35 ms`.
 pub fn seconds(seconds: f64) -> String {
     match seconds {
         s if s >= 99.5 => format!("{s:.0} s"),
         s if s >= 9.95 => format!("{s:.1} s"),
         s if s >= 0.1 => format!("{s:.2} s"),
+        s if s >= 9.95e-3 => format!("{:.0} ms", s * 1e3),
         s => format!("{:.1} ms", s * 1e3),
     }
 }

@@ -14,7 +14,7 @@ const CHARACTER: f64 = 6.6;
 const GAP: f64 = 9.0;
 
 /// The distance between labels of the vertical axis, units of the drawing.
-const LINE: f64 = 17.0;
+const LINE: f64 = 20.0;
 
 /// The size of a drawing, in units that are about a pixel.
 struct Layout {
