@@ -5,7 +5,7 @@ use crate::proof::exact_rows::ROWS_PER_EXACT_ROW;
 use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
-use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
+use equilux_formats::{ClusterTree, Optics, Result, Rgb, Rows};
 use std::time::{Duration, Instant};
 
 /// The whole-scene answer and what it took.
@@ -20,9 +20,9 @@ pub struct Classic {
     pub solve_time: Duration,
 }
 
-/// Compute the whole matrix at once and solve it at once. None if the monitor was stopped.
+/// Compute the whole matrix at once and solve it at once. Fails if the monitor was stopped.
 /// `optics` are those of all elements, emission with all that drives the exchange.
-pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Option<Classic> {
+pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Classic> {
     let (matrix, form_factor_time) = whole_matrix(placed, monitor)?;
     let start = Instant::now();
     let trees: Vec<&ClusterTree> =
@@ -32,11 +32,11 @@ pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Option<Cl
     let factors = factorise(&matrix, &clusters, &optics.reflectance, solver);
     let system = LocalSystem::new(&matrix, &clusters, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
-    Some(Classic { radiosity, form_factor_time, solve_time: start.elapsed(), matrix })
+    Ok(Classic { radiosity, form_factor_time, solve_time: start.elapsed(), matrix })
 }
 
 /// Every form factor of the scene, element by element.
-fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> {
+fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Result<(Rows, Duration)> {
     let world = &placed.world;
     let element: Vec<u32> =
         (0..world.nodes.len()).map(|node| world.element_of(node).map_or(u32::MAX, |e| e as u32)).collect();
@@ -49,5 +49,5 @@ fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> 
         rows.extend((0..timed.block.receivers()).map(named));
     }
     let columns = 2 * world.elements.len() - usize::from(!world.elements.is_empty());
-    Some((Rows::from_rows(columns, rows), time))
+    Ok((Rows::from_rows(columns, rows), time))
 }

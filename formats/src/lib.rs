@@ -23,7 +23,7 @@ mod whole_file;
 pub use baked::{Answers, BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
 pub use clusters::ClusterTree;
 pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
-pub use error::{Error, Result};
+pub use error::{Error, Problem, Result, unless_stopped};
 pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics, Tints};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};

@@ -10,7 +10,7 @@ pub use sweep::{Swept, Tally};
 pub use turn::Turn;
 
 use crate::container::{Kind, Reader, Writer};
-use crate::error::{Error, Result};
+use crate::error::{Error, Problem, Result};
 use crate::fingerprint::{Content, Digest, Key, Manifest};
 use crate::stored::Stored;
 use crate::whole_file::remove_left_over;
@@ -35,7 +35,7 @@ pub struct Store {
 /// What happened since the folder was opened.
 #[derive(Debug, Default)]
 struct Log {
-    damages: Vec<Error>,
+    damages: Vec<Problem>,
     /// Files that were read or written.
     used: HashSet<PathBuf>,
 }
@@ -108,7 +108,7 @@ impl Store {
     }
 
     /// What was found damaged since the last call, in the order in which it was found, so that a person hears of it.
-    pub fn take_damages(&self) -> Vec<Error> {
+    pub fn take_damages(&self) -> Vec<Problem> {
         std::mem::take(&mut self.log().damages)
     }
 
@@ -171,9 +171,10 @@ impl Store {
 
     /// A file that is looked at twice is told of once.
     fn note_damage(&self, error: &Error) {
+        let Error::Problem(problem) = error else { return };
         let damages = &mut self.log().damages;
-        if damages.iter().all(|known| known.file != error.file) {
-            damages.push(error.clone());
+        if damages.iter().all(|known| known.file != problem.file) {
+            damages.push(problem.clone());
         }
     }
 

@@ -87,12 +87,12 @@ fn damage_is_found<T: Stored + Debug>(value: &T) {
         let mut flipped = bytes.clone();
         flipped[position] ^= 1 << (position % 8);
         let error = read_bytes::<T>(&folder, &flipped).expect_err(&format!("byte {position} flipped"));
-        assert_eq!(error.remedy, "bake it again", "{error}");
+        assert!(error.to_string().ends_with("; bake it again"), "{error}");
         read_bytes::<T>(&folder, &bytes[..position]).expect_err(&format!("cut to {position} bytes"));
     }
     for more in [vec![0], vec![0xFF; 7], bytes.clone()] {
         let error = read_bytes::<T>(&folder, &[&bytes[..], &more].concat()).expect_err("trailing bytes");
-        assert!(error.expected.contains(&format!("{} bytes", bytes.len())), "{error}");
+        assert!(error.to_string().contains(&format!("{} bytes", bytes.len())), "{error}");
     }
 }
 

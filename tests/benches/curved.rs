@@ -168,17 +168,8 @@ impl Scene {
     /// The treecode's rows of everything on the walls: mean time a row, µs, and the largest defect of a row's sum.
     fn rows(&self, resolution: Resolution) -> (f64, f64) {
         let senders: Vec<usize> = (0..self.world.instances()).collect();
-        let columns = 0..self.world.nodes.len();
-        let request = Request {
-            world: &self.world,
-            receivers: Audience::Instance(0),
-            senders: &senders,
-            columns,
-            already: None,
-            resolution,
-            revision: None,
-        };
-        let rows = block(&request, &Monitor::default()).expect("nobody stops it");
+        let request = Request::new(&self.world, Audience::Instance(0), &senders, resolution);
+        let rows = block(&request, &Monitor::default()).expect("not stopped");
         let defect = rows.row_sums.iter().map(|sum| (sum - 1.0).abs()).fold(0.0, f64::max);
         (rows.time.as_secs_f64() * 1e6 / self.walls as f64, defect)
     }

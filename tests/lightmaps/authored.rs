@@ -40,7 +40,7 @@ fn a_valid_layout_is_kept_and_takes_light_without_bleeding() {
     // Light of its own for each side of each surface.
     let light =
         |texels: &Texels| vec![texels.patches[0].normal.to_array().map(|x| 2.0 + x); texels.texels.len()];
-    let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default()).expect("nobody stops it");
+    let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default()).expect("not stopped");
     let (mut area, mut bled) = (0.0, 0.0f64);
     for (number, tile) in lightmap.tiles.iter().enumerate() {
         let (chart, grid) = atlas.chart_of(tile);

@@ -49,7 +49,7 @@ fn charts_do_not_bleed_into_each_other() {
         |texels| texels.texels.iter().map(|_| [white(texels.patches[0].normal); 3]).collect(),
         &Monitor::default(),
     )
-    .expect("nobody stops it");
+    .expect("not stopped");
     let mut seen = [0, 0];
     for (tile, point, value) in lookups(&lightmap) {
         let (chart, _) = atlas.chart_of(&lightmap.tiles[tile]);
@@ -69,7 +69,7 @@ fn even_light_stays_even_everywhere() {
     let atlas = Atlas::new(&scene, None).expect("an atlas");
     let even =
         |texels: &equilux_assemble::lightmap::texels::Texels| vec![[0.25, 0.5, 0.75]; texels.texels.len()];
-    let lightmap = Lightmap::new(&scene, &atlas, even, &Monitor::default()).expect("nobody stops it");
+    let lightmap = Lightmap::new(&scene, &atlas, even, &Monitor::default()).expect("not stopped");
     for (tile, point, value) in lookups(&lightmap) {
         assert!((value - 0.5).abs() < 1e-14, "{value} at {point} of chart {tile}, expected 0.5");
     }
@@ -85,8 +85,8 @@ fn a_lightmap_can_be_stopped_while_it_is_made() {
         monitor.stop();
         vec![[1.0; 3]; texels.texels.len()]
     };
-    assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_none(), "stopped at its first texels");
-    assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_some(), "stopped long before");
+    assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_err(), "stopped at its first texels");
+    assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_ok(), "stopped long before");
 }
 
 /// The default gives an image of about 1024² texels for scenes of any size.

@@ -29,7 +29,7 @@ fn with_a_jump(texels: &Texels) -> Vec<Rgb> {
 /// The largest difference of lookups along the piece of x = 1 that both charts have.
 fn disagreement(scene: &Scene, depth: f64) -> f64 {
     let atlas = Atlas::new(scene, Some(TEXEL)).expect("a small atlas");
-    let lightmap = Lightmap::new(scene, &atlas, with_a_jump, &Monitor::default()).expect("nobody stops it");
+    let lightmap = Lightmap::new(scene, &atlas, with_a_jump, &Monitor::default()).expect("not stopped");
     let differs = |step: u32| {
         let point = dvec3(1.0, f64::from(step) / 64.0 * depth, 0.0);
         (lookup(&lightmap, 0, 0, point)[0] - lookup(&lightmap, 1, 0, point)[0]).abs()
@@ -59,7 +59,7 @@ fn instances_that_touch_agree_too() {
     let scene = scene(tile, &[DAffine3::IDENTITY, beside]);
     let atlas = Atlas::new(&scene, Some(TEXEL)).expect("a small atlas");
     let light = |texels: &Texels| vec![[texels.instance as f64; 3]; texels.texels.len()];
-    let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default()).expect("nobody stops it");
+    let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default()).expect("not stopped");
     let middle = [dvec3(1.0, 0.5, 0.0), dvec3(0.0, 0.5, 0.0)];
     let [left, right] = [0, 1].map(|tile: usize| lookup(&lightmap, tile, 0, middle[tile])[0]);
     assert!((left - right).abs() < 1e-3, "{left} and {right} on the edge between light 0 and 1");

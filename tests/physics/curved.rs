@@ -24,18 +24,9 @@ fn world(size: f64, solids: &[(Vec<Triangle>, DAffine3)]) -> World {
 /// The rows of everything to everything.
 fn rows(world: &World, resolution: Resolution) -> Vec<Timed> {
     let senders: Vec<usize> = (0..world.instances()).collect();
-    let columns = 0..world.nodes.len();
     let of = |receivers: usize| {
-        let request = Request {
-            world,
-            receivers: Audience::Instance(receivers),
-            senders: &senders,
-            columns: columns.clone(),
-            already: None,
-            resolution,
-            revision: None,
-        };
-        block(&request, &Monitor::default()).expect("nobody stops it")
+        let request = Request::new(world, Audience::Instance(receivers), &senders, resolution);
+        block(&request, &Monitor::default()).expect("not stopped")
     };
     senders.iter().map(|&receivers| of(receivers)).collect()
 }

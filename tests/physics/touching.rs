@@ -49,17 +49,8 @@ fn defect(things: &[Part]) -> f64 {
     let all: Vec<Geometry> = [walls, fine(&table, 0.4)].into_iter().chain(things.iter().map(mesh)).collect();
     let world = World::new(all.iter().map(|geometry| (geometry, DAffine3::IDENTITY)));
     let senders: Vec<usize> = (0..world.instances()).collect();
-    let columns = 0..world.nodes.len();
-    let request = Request {
-        world: &world,
-        receivers: Audience::Instance(0),
-        senders: &senders,
-        columns,
-        already: None,
-        resolution: EXACT,
-        revision: None,
-    };
-    let rows = block(&request, &Monitor::default()).expect("nobody stops it");
+    let request = Request::new(&world, Audience::Instance(0), &senders, EXACT);
+    let rows = block(&request, &Monitor::default()).expect("not stopped");
     rows.row_sums.iter().map(|sum| (sum - 1.0).abs()).fold(0.0, f64::max)
 }
 

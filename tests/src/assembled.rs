@@ -38,16 +38,9 @@ impl Assembled {
     ) -> Self {
         let world = World::new(geometries.iter().map(|g| (g, DAffine3::IDENTITY)));
         let rows = |receivers: usize, senders: &[usize], columns| {
-            let request = Request {
-                world: &world,
-                receivers: Audience::Instance(receivers),
-                senders,
-                columns,
-                already: None,
-                resolution,
-                revision: None,
-            };
-            block(&request, &Monitor::default()).expect("nobody stops it").block
+            let request = Request::new(&world, Audience::Instance(receivers), senders, resolution)
+                .with_columns(columns);
+            block(&request, &Monitor::default()).expect("not stopped").block
         };
         let all = 0..geometries.len();
         let self_blocks = all.clone().map(|k| rows(k, &[k], world.nodes_of(k))).collect();

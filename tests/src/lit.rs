@@ -75,10 +75,10 @@ fn coupled_scene(scene: &Scene, cache: &Path, wanted: &Preparation) -> (Placed, 
     let prepared = prepare(scene, wanted).expect("elements");
     let (resolution, file) = (wanted.resolution, scene.file.as_path());
     let oven = Oven { store: &store, file, resolution, monitor: &monitor };
-    let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked").expect("not stopped"));
+    let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked"));
     let placed = Placed::new(parts.collect(), prepared.instances);
     let coupler = Coupler { placed: &placed, store: &store, file, resolution, monitor: &monitor };
-    let couple = |k: usize| coupler.couple(k).expect("coupled").expect("not stopped");
+    let couple = |k: usize| coupler.couple(k).expect("coupled");
     let coupled = (0..placed.instances.len()).map(couple).collect();
     (placed, coupled)
 }

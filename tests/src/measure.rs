@@ -57,16 +57,8 @@ impl Level {
         let everyone: Vec<usize> = (0..self.world.instances()).collect();
         let mut measured = Measured { blocks: vec![], time: Duration::ZERO, defect: 0.0 };
         for &receivers in &everyone {
-            let request = Request {
-                world: &self.world,
-                receivers: Audience::Instance(receivers),
-                senders: &everyone,
-                columns: 0..self.world.nodes.len(),
-                already: None,
-                resolution,
-                revision: None,
-            };
-            let timed = block(&request, &Monitor::default()).expect("nobody stops it");
+            let request = Request::new(&self.world, Audience::Instance(receivers), &everyone, resolution);
+            let timed = block(&request, &Monitor::default()).expect("not stopped");
             measured.time += timed.time;
             let defects = timed.row_sums.iter().map(|sum| (sum - 1.0).abs());
             measured.defect = defects.fold(measured.defect, f64::max);

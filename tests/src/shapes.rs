@@ -116,10 +116,9 @@ pub fn alone(geometry: &Geometry) -> World {
 
 /// The block from one instance to others of a world; columns count through the nodes of all.
 pub fn coupling(world: &World, receivers: usize, senders: &[usize], resolution: Resolution) -> Rows {
-    let columns = 0..world.nodes.len();
     let receivers = Audience::Instance(receivers);
-    let request = Request { world, receivers, senders, columns, already: None, resolution, revision: None };
-    block(&request, &Monitor::default()).expect("nobody stops it").block
+    let request = Request::new(world, receivers, senders, resolution);
+    block(&request, &Monitor::default()).expect("not stopped").block
 }
 
 /// The exact block of a geometry alone.

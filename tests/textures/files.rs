@@ -104,7 +104,7 @@ fn lightmaps_show_what_is_painted() {
     let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
     let atlas = Atlas::new(&scene, Some(0.05)).expect("a small atlas");
     let lit = |texels: &Texels| vec![[2.0; 3]; texels.texels.len()];
-    let lightmap = Lightmap::new(&scene, &atlas, lit, &Monitor::default()).expect("nobody stops it");
+    let lightmap = Lightmap::new(&scene, &atlas, lit, &Monitor::default()).expect("not stopped");
     assert_eq!(lightmap.tiles.len(), 1);
     let (_, grid) = atlas.chart_of(&lightmap.tiles[0]);
     for (x, y) in (0..6).flat_map(|x| (0..4).map(move |y| (x, y))) {

@@ -9,7 +9,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
-use equilux_formats::{Element, Optics, Rgb};
+use equilux_formats::{Element, Error, Optics, Result, Rgb};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -29,8 +29,8 @@ pub struct Dense {
 }
 
 impl Dense {
-    /// The exact one. None if the monitor was stopped.
-    pub fn exact(world: &World, monitor: &Monitor) -> Option<Self> {
+    /// The exact one. Fails if the monitor was stopped.
+    pub fn exact(world: &World, monitor: &Monitor) -> Result<Self> {
         let size = world.elements.len();
         let element: Vec<Option<usize>> = (0..world.nodes.len()).map(|node| world.element_of(node)).collect();
         let mut matrix = Self { size, values: vec![0.0; size * size], time: Duration::ZERO };
@@ -46,11 +46,11 @@ impl Dense {
                 }
             }
         }
-        Some(matrix)
+        Ok(matrix)
     }
 
-    /// The one with so many rays a pair. None if the monitor was stopped.
-    pub fn by_rays(elements: &[Element], count: usize, monitor: &Monitor) -> Option<Self> {
+    /// The one with so many rays a pair. Fails if the monitor was stopped.
+    pub fn by_rays(elements: &[Element], count: usize, monitor: &Monitor) -> Result<Self> {
         let size = elements.len();
         let index = RayIndex::new(elements);
         monitor.begin("rays", size, size as f64);
@@ -62,7 +62,7 @@ impl Dense {
         };
         let (rows, times): (Vec<Vec<f64>>, Vec<Duration>) = (0..size).into_par_iter().map(row).unzip();
         let matrix = Self { size, values: rows.concat(), time: times.iter().sum() };
-        (!monitor.stopped()).then_some(matrix)
+        if monitor.stopped() { Err(Error::Stopped) } else { Ok(matrix) }
     }
 
     /// Bytes of the matrix.

@@ -122,8 +122,6 @@ struct Solved {
 /// Run the job; everything is written when this returns.
 pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     let start = Instant::now();
-    let stopped =
-        || Error::new(&job.scene, "stopped before the light was known", "a complete run", "run it again");
     let scene = import_scene(&job.scene)?;
     let places = job.points.as_deref().map(|file| points::read(file, scene.origin)).transpose()?;
     let preparation = Preparation {
@@ -141,10 +139,10 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     })?;
     let store = Store::open(nowhere.path())?;
     let coupler = Coupler { placed: &placed, store: &store, file: &job.scene, resolution: EXACT, monitor };
-    let direct = direct(&coupler, &lights)?.ok_or_else(stopped)?;
+    let direct = direct(&coupler, &lights)?;
     let each: Vec<Optics> =
         (0..placed.instances.len()).map(|k| driven(&placed.optics_of(k), &direct.irradiance[k])).collect();
-    let mut solved = solve(job, &placed, &joined(&each), monitor)?.ok_or_else(stopped)?;
+    let mut solved = solve(job, &placed, &joined(&each), monitor)?;
     with_direct(&mut solved.irradiance, &direct.irradiance);
     let (solve, solve_cpu, peak) = (start.elapsed().as_secs_f64(), cpu_seconds(), peak_rss());
 
@@ -153,8 +151,7 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     let gather = Gather::new(&placed, &emission, &solved.radiosity, &lights, EXACT);
     let outputs = match &places {
         Some(places) => {
-            let lights =
-                points::light(&gather, &placed.world.elements, places, monitor).ok_or_else(stopped)?;
+            let lights = points::light(&gather, &placed.world.elements, places, monitor)?;
             vec![write_points(&job.out.join(&scene.name), places, scene.origin, &lights, &solved.irradiance)?]
         }
         None => vec![],
@@ -177,14 +174,13 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     })
 }
 
-/// The light of all elements. None if the monitor was stopped.
-fn solve(job: &ClassicJob, placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Option<Solved>> {
+/// The light of all elements. Fails if the monitor was stopped.
+fn solve(job: &ClassicJob, placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Solved> {
     let matrix = match job.way {
         Way::Exact => Dense::exact(&placed.world, monitor),
         Way::Rays(count) => Dense::by_rays(&placed.world.elements, count as usize, monitor),
-        Way::Progressive(unshot) => return Ok(progressive::solve(&placed.world, optics, unshot, monitor)),
-    };
-    let Some(matrix) = matrix else { return Ok(None) };
+        Way::Progressive(unshot) => return progressive::solve(&placed.world, optics, unshot, monitor),
+    }?;
     if matrix.is_endless(optics) {
         let found = "closed, reflects everything and emits somewhere: its light grows without end";
         let remedy = "lower a base colour below 1, or switch the emission off";
@@ -193,7 +189,7 @@ fn solve(job: &ClassicJob, placed: &Placed, optics: &Optics, monitor: &Monitor) 
     let radiosity = matrix.solve(optics);
     let irradiance = matrix.irradiance(&radiosity);
     let (form_factor_time, matrix_bytes) = (matrix.time, matrix.bytes());
-    Ok(Some(Solved { irradiance, radiosity, form_factor_time, matrix_bytes, shots: None }))
+    Ok(Solved { irradiance, radiosity, form_factor_time, matrix_bytes, shots: None })
 }
 
 /// The parts in their places, without any form factors.

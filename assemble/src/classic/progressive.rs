@@ -9,7 +9,7 @@ use equilux_bake::equilibrium::{added, scaled};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::world::World;
-use equilux_formats::{Element, Optics, Rgb};
+use equilux_formats::{Element, Optics, Result, Rgb};
 use std::time::Duration;
 
 /// Elements that shoot at once, so that threads have something to do.
@@ -18,8 +18,9 @@ const SHOOTERS: usize = 16;
 /// Shots an element after which light is taken for endless.
 const SHOTS: usize = 100;
 
-/// Shoot until the unshot power is less than the share `unshot` of what all elements emit. None if the monitor was stopped.
-pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> Option<Solved> {
+/// Shoot until the unshot power is less than the share `unshot` of what all elements emit. Fails if the monitor was
+/// stopped.
+pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> Result<Solved> {
     let elements = &world.elements;
     let power = |left: &[Rgb]| -> f64 {
         left.iter().zip(elements).map(|(b, e)| e.area * b.iter().sum::<f64>()).sum()
@@ -42,7 +43,7 @@ pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> 
         monitor.advance(brightest.len());
     }
     let Light { radiosity, irradiance, time, .. } = light;
-    Some(Solved { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
+    Ok(Solved { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
 }
 
 struct Light<'a> {
@@ -56,7 +57,7 @@ struct Light<'a> {
 
 impl Light<'_> {
     /// These elements send all that they have not sent yet.
-    fn shoot(&mut self, shooters: &[usize], monitor: &Monitor) -> Option<()> {
+    fn shoot(&mut self, shooters: &[usize], monitor: &Monitor) -> Result<()> {
         let world = self.world;
         let points: Vec<Element> = shooters.iter().map(|&j| world.elements[j]).collect();
         let timed = exact_rows(world, Audience::Points(&points), monitor)?;
@@ -73,7 +74,7 @@ impl Light<'_> {
                 self.unshot[i] = added(self.unshot[i], reflected);
             }
         }
-        Some(())
+        Ok(())
     }
 }
 

@@ -110,33 +110,18 @@ impl Coupler<'_> {
         self.store.read_ahead::<BakedLight>(&lights.collect::<Vec<_>>());
     }
 
-    /// Couple one instance with all others. None if the monitor was stopped.
-    pub fn couple(&self, instance: usize) -> Result<Option<Coupled>> {
+    /// Couple one instance with all others. Fails if the monitor was stopped.
+    pub fn couple(&self, instance: usize) -> Result<Coupled> {
         let intruders = self.intruders(instance);
-        let mut corrected = None;
-        if !intruders.is_empty() {
-            corrected = self.correct(instance, intruders)?;
-            if corrected.is_none() {
-                return Ok(None);
-            }
-        }
+        let corrected = if intruders.is_empty() { None } else { Some(self.correct(instance, intruders)?) };
         let baked = &self.placed.part_of(instance).part.self_block;
         let own = corrected.as_ref().map_or(baked, |c: &Corrected| &c.self_block);
         let others: Vec<usize> = (0..self.placed.instances.len()).filter(|&l| l != instance).collect();
-        let request = Request {
-            world: &self.placed.world,
-            receivers: Audience::Instance(instance),
-            senders: &others,
-            columns: 0..self.placed.world.nodes.len(),
-            already: None,
-            resolution: self.resolution,
-            revision: None,
-        };
-        let Some(found) = self.block((instance, COUPLING), request, Some(own), None)? else {
-            return Ok(None);
-        };
-        let Block { rows: coupling, origin, computed, computed_by_row, time, .. } = found;
-        Ok(Some(Coupled { coupling, origin, computed, computed_by_row, corrected, time }))
+        let request =
+            Request::new(&self.placed.world, Audience::Instance(instance), &others, self.resolution);
+        let Block { rows: coupling, origin, computed, computed_by_row, time, .. } =
+            self.block((instance, COUPLING), request, Some(own), None)?;
+        Ok(Coupled { coupling, origin, computed, computed_by_row, corrected, time })
     }
 
     /// Where the blocks of an instance would come from. Computes none of them.
@@ -156,34 +141,28 @@ impl Coupler<'_> {
     }
 
     /// The whole self block anew, with everything that stands inside.
-    fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Option<Corrected>> {
-        let request = Request {
-            world: &self.placed.world,
-            receivers: Audience::Instance(instance),
-            senders: &[instance],
-            columns: self.placed.world.nodes_of(instance),
-            already: None,
-            resolution: self.resolution,
-            revision: None,
-        };
+    fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Corrected> {
+        let senders = [instance];
+        let request = Request::of_self(&self.placed.world, &senders, self.resolution);
+        self.monitor.expect(self.placed.world.elements_of(instance).len() as f64);
         // The part alone is a scene too: what stands inside appeared in it.
         let part = &self.placed.part_of(instance).part;
         let alone = Older::alone(self.placed, instance, &intruders);
-        let Some(found) = self.block((instance, CORRECTED), request, None, Some(alone))? else {
-            return Ok(None);
-        };
-        let Block { rows: self_block, origin, computed, computed_by_row, key, time } = found;
+        let Block { rows: self_block, origin, computed, computed_by_row, key, time } =
+            self.block((instance, CORRECTED), request, None, Some(alone))?;
+        if origin.is_reused() {
+            self.monitor.spare(self.placed.world.elements_of(instance).len() as f64);
+        }
         // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
         let optics = self.placed.paint_of(instance);
         let manifest = light_manifest(key.into(), &optics, part.local.solver);
         let name = self.name(instance, "corrected light");
         let (light, _) = cached(self.store, &name, &manifest, self.monitor, || {
             let local = local_equilibrium(&self_block, &part.geometry, &optics, part.local.solver);
-            Ok(Some(BakedLight { optics: optics.clone(), local }))
-        })?
-        .expect("a local equilibrium is not stopped halfway");
+            Ok(BakedLight { optics: optics.clone(), local })
+        })?;
         let local = light.local;
-        Ok(Some(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time }))
+        Ok(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time })
     }
 
     /// The block that is asked for: from the cache, or from an older one as far as what changed since cannot matter, or
@@ -194,7 +173,7 @@ impl Coupler<'_> {
         request: Request,
         own: Option<&Rows>,
         otherwise: Option<Older>,
-    ) -> Result<Option<Block>> {
+    ) -> Result<Block> {
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
         let (mut time, mut computed, mut computed_by_row) = (Duration::ZERO, 0, vec![]);
@@ -214,18 +193,15 @@ impl Coupler<'_> {
             // A row that is full already sees nothing of other parts: nothing is searched for it.
             let sums = |own: &Rows| (0..own.receivers()).map(|i| own.row_sum(i)).collect::<Vec<_>>();
             let already = own.map(sums);
-            Ok(block(&Request { revision, already: already.as_deref(), ..request }, self.monitor).map(
-                |mut timed| {
-                    (time, computed) = (timed.time, timed.computed);
-                    computed_by_row = std::mem::take(&mut timed.computed_by_row);
-                    made(timed, older.as_ref().map(|older| older.key))
-                },
-            ))
-        })?;
-        Ok(found.map(|(rows, origin)| {
-            let key = self.store.target(&manifest.key());
-            Block { rows, origin, key, computed, computed_by_row, time }
-        }))
+            let request = request.with_already(already.as_deref()).with_revision(revision);
+            let mut timed = block(&request, self.monitor)?;
+            (time, computed) = (timed.time, timed.computed);
+            computed_by_row = std::mem::take(&mut timed.computed_by_row);
+            Ok(made(timed, older.as_ref().map(|older| older.key)))
+        });
+        let (rows, origin) = found?;
+        let key = self.store.target(&manifest.key());
+        Ok(Block { rows, origin, key, computed, computed_by_row, time })
     }
 
     /// The block of another instance of the same part that stands among much the same, as if that one were here: what one

@@ -27,12 +27,12 @@ pub struct Direct {
 /// Of a lamp's power this share is nothing: what rounding leaves at the edges of occluders.
 const NOTHING: f64 = 1e-9;
 
-/// D of all elements. None if the monitor was stopped.
-pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
+/// D of all elements. Fails if the monitor was stopped.
+pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
     let placed = coupler.placed;
     let dark = vec![[0.0; 3]; placed.world.elements.len()];
     if lights.is_empty() {
-        return Ok(Some(Direct { irradiance: placed.split(&dark), computed: 0, unlit: vec![] }));
+        return Ok(Direct { irradiance: placed.split(&dark), computed: 0, unlit: vec![] });
     }
     let Arriving { irradiance, unlit } = if lights.lamps.is_empty() && lights.suns.is_empty() {
         Arriving { irradiance: dark, unlit: vec![] }
@@ -47,7 +47,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
         let sky = world.add_far(dome);
         let seen = dome.clusters.means(sends);
         for (k, own) in irradiance.iter_mut().enumerate() {
-            let Some((rows, new)) = sky_block(coupler, &world, sky, k)? else { return Ok(None) };
+            let (rows, new) = sky_block(coupler, &world, sky, k)?;
             computed += new;
             if new == 0 {
                 coupler.monitor.spare(own.len() as f64);
@@ -55,7 +55,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
             own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum = added(*sum, h));
         }
     }
-    Ok(Some(Direct { irradiance, computed, unlit }))
+    Ok(Direct { irradiance, computed, unlit })
 }
 
 /// What arrives of lamps and suns.
@@ -105,7 +105,7 @@ fn of_lamps(placed: &Placed, lights: &Lights) -> Arriving {
 }
 
 /// The form factors of an instance's elements to the sky's cells, and how many were computed.
-fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> Result<Option<(Rows, usize)>> {
+fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> Result<(Rows, usize)> {
     let name = coupler.name(instance, "sky");
     let manifest = coupler.sky_manifest(instance);
     let mut computed = 0;
@@ -115,22 +115,16 @@ fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> R
             world.elements_of(instance).len(),
             world.elements_of(instance).len() as f64,
         );
-        let request = Request {
-            world,
-            receivers: Audience::Instance(instance),
-            senders: &[sky],
-            columns: world.nodes_of(sky),
-            already: None,
-            // Every cell has its own light, and every sky its own differences between them.
-            resolution: Resolution { opening: 0.0, ..coupler.resolution },
-            revision: None,
-        };
-        Ok(block(&request, coupler.monitor).map(|timed| {
-            computed = timed.computed;
-            timed.block
-        }))
-    })?;
-    Ok(found.map(|(rows, _)| (rows, computed)))
+        // Every cell has its own light, and every sky its own differences between them.
+        let resolution = Resolution { opening: 0.0, ..coupler.resolution };
+        let senders = [sky];
+        let request = Request::new(world, Audience::Instance(instance), &senders, resolution)
+            .with_columns(world.nodes_of(sky));
+        let timed = block(&request, coupler.monitor)?;
+        computed = timed.computed;
+        Ok(timed.block)
+    });
+    Ok((found?.0, computed))
 }
 
 /// The same optics with what elements reflect of D as emission: what drives the exchange.

@@ -25,7 +25,7 @@ use equilux_bake::equilibrium::LocalSystem;
 use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::prepare::Prepared;
 use equilux_bake::treecode::Resolution;
-use equilux_formats::{Error, Optics, Result, Rgb, Scene};
+use equilux_formats::{Optics, Result, Rgb, Scene};
 
 /// All that the exchange needs to know of a scene.
 pub struct Equation {
@@ -55,18 +55,14 @@ impl Equation {
         environment: &Environment,
         observer: &dyn Observer,
     ) -> Result<Self> {
-        let stopped = || {
-            let remedy = "run the same command again: what was finished is in the cache";
-            Error::new(oven.file, "stopped before the form factors were complete", "a complete run", remedy)
-        };
         observer.prepared(scene, &prepared);
         oven.monitor.expect(expected_rows(&prepared, environment));
-        let mut placed = bake_parts(oven, prepared, observer)?.ok_or_else(stopped)?;
+        let mut placed = bake_parts(oven, prepared, observer)?;
         observer.placed(&placed, &scene.cameras);
-        let coupled = couple(&coupler(oven, &placed), observer)?.ok_or_else(stopped)?;
+        let coupled = couple(&coupler(oven, &placed), observer)?;
         placed.relight(oven, |k| coupled[k].corrected.is_none())?;
         let lights = lights(&scene.lights, environment.light_units, environment.sky.as_ref(), &placed.world);
-        let direct = direct(&coupler(oven, &placed), &lights)?.ok_or_else(stopped)?;
+        let direct = direct(&coupler(oven, &placed), &lights)?;
         let driven = |k: usize| driven(&placed.optics_of(k), &direct.irradiance[k]);
         let driven = (0..placed.instances.len()).map(driven).collect();
         let (optics, resolution) = (whole_optics(&placed), oven.resolution);
@@ -129,15 +125,15 @@ fn expected_rows(prepared: &Prepared, environment: &Environment) -> f64 {
     (parts + elements + sky) as f64 + ROWS_PER_ELEMENT * elements as f64
 }
 
-fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<Option<Placed>> {
+fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<Placed> {
     oven.read_ahead(&prepared.parts);
     let mut parts: Vec<Baked> = Vec::new();
     for (number, part) in prepared.parts.iter().enumerate() {
-        let Some(baked) = oven.bake(part)? else { return Ok(None) };
+        let baked = oven.bake(part)?;
         observer.baked(number, &baked);
         parts.push(baked);
     }
-    Ok(Some(Placed::new(parts, prepared.instances)))
+    Ok(Placed::new(parts, prepared.instances))
 }
 
 fn coupler<'a>(oven: &'a Oven, placed: &'a Placed) -> Coupler<'a> {
@@ -145,15 +141,13 @@ fn coupler<'a>(oven: &'a Oven, placed: &'a Placed) -> Coupler<'a> {
     Coupler { placed, store, file, resolution, monitor }
 }
 
-fn couple(coupler: &Coupler, observer: &dyn Observer) -> Result<Option<Vec<Coupled>>> {
+fn couple(coupler: &Coupler, observer: &dyn Observer) -> Result<Vec<Coupled>> {
     coupler.read_ahead();
     let couple = |k: usize| {
         let coupled = coupler.couple(k)?;
-        if let Some(coupled) = &coupled {
-            observer.coupled(k, coupled);
-            if coupled.origin.is_reused() {
-                coupler.monitor.spare(coupler.placed.world.elements_of(k).len() as f64);
-            }
+        observer.coupled(k, &coupled);
+        if coupled.origin.is_reused() {
+            coupler.monitor.spare(coupler.placed.world.elements_of(k).len() as f64);
         }
         Ok(coupled)
     };

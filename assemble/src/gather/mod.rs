@@ -150,16 +150,8 @@ impl Gather {
 
     /// The rows of points, columns through all nodes of the world.
     fn rows(&self, points: &[Element], senders: &[usize], resolution: Resolution) -> Rows {
-        let request = Request {
-            world: &self.world,
-            receivers: Audience::Points(points),
-            senders,
-            columns: 0..self.world.nodes.len(),
-            already: None,
-            resolution,
-            revision: None,
-        };
-        // Each call is short: whoever calls looks whether to stop.
-        block(&request, &Monitor::default()).expect("nobody stops it").block
+        let request = Request::new(&self.world, Audience::Points(points), senders, resolution);
+        // Each call is short: the caller checks whether the run was stopped.
+        block(&request, &Monitor::default()).expect("not stopped").block
     }
 }

@@ -7,7 +7,7 @@ use crate::output_file;
 use crate::table::Table;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::visibility::rays::RayIndex;
-use equilux_formats::{Element, Result, Rgb};
+use equilux_formats::{Element, Error, Result, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -79,14 +79,14 @@ pub fn places(table: &Table, origin: DVec3) -> Result<Vec<Place>> {
 /// Light at a point takes about as much time as this many rows of form factors.
 pub const ROWS_PER_POINT: f64 = 1.0;
 
-/// The light at places, none for those on no surface of these `elements`, which are the scene's. None at all if the monitor
-/// is stopped meanwhile.
+/// The light at places, none for those on no surface of these `elements`, which are the scene's. Fails if the monitor is
+/// stopped meanwhile; a stop before was meant for something else.
 pub fn light(
     gather: &Gather,
     elements: &[Element],
     places: &[Place],
     monitor: &Monitor,
-) -> Option<Vec<Option<PointLight>>> {
+) -> Result<Vec<Option<PointLight>>> {
     let was_stopped = monitor.stopped();
     let mut found: Vec<(usize, Element, usize)> = located(elements, places)
         .into_iter()
@@ -99,7 +99,7 @@ pub fn light(
     monitor.begin("light of points", found.len(), ROWS_PER_POINT * found.len() as f64);
     for batch in found.chunks(BATCH) {
         if monitor.stopped() && !was_stopped {
-            return None;
+            return Err(Error::Stopped);
         }
         let points: Vec<Element> = batch.iter().map(|(_, point, _)| *point).collect();
         for (&(place, _, element), irradiance) in batch.iter().zip(gather.irradiance(&points)) {
@@ -107,7 +107,7 @@ pub fn light(
         }
         monitor.advance(batch.len());
     }
-    Some(lights)
+    Ok(lights)
 }
 
 /// The nearest point on an element that looks the place's way, and the element, for each place that has one.

@@ -37,7 +37,7 @@ pub use write::{Saved, write};
 use atlas::{Atlas, Tile};
 use bands::bands;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Material, MaterialId, Rgb, Scene};
+use equilux_formats::{Error, Material, MaterialId, Result, Rgb, Scene};
 use rayon::prelude::*;
 use std::ops::Range;
 use texels::Texels;
@@ -90,13 +90,13 @@ pub const ROWS_PER_TEXEL: f64 = 0.1;
 
 impl<'a> Lightmap<'a> {
     /// The lightmap of `scene`. `irradiance` gives texels theirs, W/m² of linear RGB, not divided by π, in their order.
-    /// None if the monitor was stopped meanwhile; a stop that was asked for before was for something else.
+    /// Fails if the monitor is stopped meanwhile; a stop before was meant for something else.
     pub fn new(
         scene: &'a Scene,
         atlas: &'a Atlas,
         irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
         monitor: &Monitor,
-    ) -> Option<Self> {
+    ) -> Result<Self> {
         let tiles = atlas.tiles();
         let values = values(scene, atlas, &tiles, irradiance, ("lightmap", ROWS_PER_TEXEL), monitor)?;
         let (mut irradiance, holds) = with_margins(values, &tiles);
@@ -104,29 +104,25 @@ impl<'a> Lightmap<'a> {
         if let Some(coats) = tints::coats(scene) {
             let tint = |of: Of| {
                 let tint = |texels: &Texels| tints::tints(scene, &coats, texels, of);
-                Some(
-                    with_margins(
-                        self::values(scene, atlas, &tiles, tint, ("textures of the lightmap", 0.0), monitor)?,
-                        &tiles,
-                    )
-                    .0,
-                )
+                let step = ("textures of the lightmap", 0.0);
+                let values = self::values(scene, atlas, &tiles, tint, step, monitor)?;
+                Ok(with_margins(values, &tiles).0)
             };
             tints = Some([tint(Of::Reflectance)?, tint(Of::Emission)?]);
         }
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
         let materials = materials.collect();
-        Some(Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds })
+        Ok(Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds })
     }
 
     /// The same with the mean direction that each texel's light comes from, which `directions` gives: scene coordinates, weighted
-    /// by what comes from there, so that it is as long as light is directed, 0 to 1. None as in [`Lightmap::new`].
+    /// by what comes from there, so that it is as long as light is directed, 0 to 1. Fails as [`Lightmap::new`] does.
     pub fn with_directions(
         mut self,
         directions: impl Fn(&Texels) -> Vec<[f64; 3]> + Sync,
         monitor: &Monitor,
-    ) -> Option<Self> {
+    ) -> Result<Self> {
         let values = values(
             self.scene,
             self.atlas,
@@ -136,7 +132,7 @@ impl<'a> Lightmap<'a> {
             monitor,
         )?;
         self.directions = Some(with_margins(values, &self.tiles).0);
-        Some(self)
+        Ok(self)
     }
 
     /// The material of a tile.
@@ -160,8 +156,8 @@ impl<'a> Lightmap<'a> {
     }
 }
 
-/// The irradiance of texels that hold some of a chart, for each tile, a step of progress of this name and cost; none if the
-/// monitor was stopped meanwhile.
+/// The irradiance of texels that hold some of a chart, for each tile, a step of progress of this name and cost. Fails if
+/// the monitor was stopped meanwhile.
 fn values(
     scene: &Scene,
     atlas: &Atlas,
@@ -169,15 +165,15 @@ fn values(
     irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
     (what, rows_per_texel): (&str, f64),
     monitor: &Monitor,
-) -> Option<Vec<Vec<Option<Rgb>>>> {
+) -> Result<Vec<Vec<Option<Rgb>>>> {
     let in_bands = |(number, tile): (usize, &Tile)| bands(tile.size).map(move |rows| (number, rows));
     let bands: Vec<(usize, Range<u32>)> = tiles.iter().enumerate().flat_map(in_bands).collect();
     let texels: f64 = tiles.iter().map(|tile| tile.size.map(f64::from)).map(|[w, h]| w * h).sum();
     monitor.begin(what, bands.len(), rows_per_texel * texels);
     let before = monitor.stopped();
-    let light_in = |(number, rows): &(usize, Range<u32>)| -> Option<Vec<([u32; 2], Rgb)>> {
+    let light_in = |(number, rows): &(usize, Range<u32>)| -> Result<Vec<([u32; 2], Rgb)>> {
         if monitor.stopped() != before {
-            return None;
+            return Err(Error::Stopped);
         }
         let tile = &tiles[*number];
         let (chart, grid) = atlas.chart_of(tile);
@@ -190,9 +186,9 @@ fn values(
             panic!("irradiance must be a number, but is {h:?} in texel {texel:?} of tile {number}");
         }
         monitor.advance(1);
-        Some(texels.texels.iter().map(|texel| texel.at).zip(light).collect())
+        Ok(texels.texels.iter().map(|texel| texel.at).zip(light).collect())
     };
-    let lit: Vec<_> = bands.par_iter().map(light_in).collect::<Option<_>>()?;
+    let lit: Vec<_> = bands.par_iter().map(light_in).collect::<Result<_>>()?;
     let mut values: Vec<Vec<Option<Rgb>>> = tiles.iter().map(|tile| vec![None; tile.texels()]).collect();
     for ((number, _), lit) in bands.iter().zip(lit) {
         let width = tiles[*number].size[0];
@@ -200,7 +196,7 @@ fn values(
             values[*number][(y * width + x) as usize] = Some(light);
         }
     }
-    Some(values)
+    Ok(values)
 }
 
 /// Light for texels around charts too, zero for all others, and which is which.

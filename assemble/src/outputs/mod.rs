@@ -22,7 +22,7 @@ use crate::statistics::mean_over_area;
 use crate::verify::Classic;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::visibility::rays::RayIndex;
-use equilux_formats::{Error, Result, Rgb, Scene};
+use equilux_formats::{Error, Result, Rgb, Scene, unless_stopped};
 use glam::DVec3;
 use rayon::prelude::*;
 use requests::{OutputRequests, Pictures};
@@ -152,7 +152,7 @@ fn write_points(folder: &Path, origin: DVec3, light: &Light, monitor: &Monitor) 
     let Some(places) = light.places else { return Ok(None) };
     let gather = light.solved.gather();
     let elements = light.solved.elements();
-    let Some(lights) = points::light(&gather, elements, places, monitor) else {
+    let Some(lights) = unless_stopped(points::light(&gather, elements, places, monitor))? else {
         let note = format!("stopped: {POINTS} was not written; that of an earlier run is as it was");
         return Ok(Some(Saved { paths: vec![], notes: vec![note] }));
     };
@@ -184,7 +184,7 @@ fn write_lightmaps(
         let directions = |texels: &_| texel_light.directions(texels);
         lightmap = lightmap.and_then(|lightmap| lightmap.with_directions(directions, monitor));
     }
-    let Some(lightmap) = lightmap else {
+    let Some(lightmap) = unless_stopped(lightmap)? else {
         let note = "stopped: no lightmaps were written; those of an earlier run are as they were";
         return Ok(Some(Saved { paths: vec![], notes: vec![note.into()] }));
     };

@@ -7,7 +7,7 @@ use crate::placed::Placed;
 use equilux_bake::equilibrium::{added, apply, scaled, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, block};
-use equilux_formats::{Rgb, Rows};
+use equilux_formats::{Result, Rgb, Rows};
 use std::time::Duration;
 
 /// An exact row takes about as much time as this many rows with clusters.
@@ -26,15 +26,15 @@ pub struct Residuals {
     pub time: Duration,
 }
 
-/// Compute exact rows for the chosen receivers and what `radiosity` (one vector an instance) misses there. None if the
-/// monitor was stopped.
+/// Compute exact rows for the chosen receivers and what `radiosity` (one vector an instance) misses there. Fails if
+/// the monitor was stopped.
 pub fn residuals(
     placed: &Placed,
     nodes: &[InstanceSystem],
     radiosity: &[Vec<Rgb>],
     chosen: &[Chosen],
     monitor: &Monitor,
-) -> Option<Residuals> {
+) -> Result<Residuals> {
     let mut all = Vec::new();
     nodes.iter().zip(radiosity).for_each(|(node, b)| node.clusters.append_means(b, &mut all));
     let count: usize = chosen.iter().map(|cluster| cluster.receivers.len()).sum();
@@ -53,7 +53,7 @@ pub fn residuals(
         };
         residuals.values.extend(batch.iter().map(|cluster| cluster.receivers.clone().map(missed).collect()));
     }
-    Some(residuals)
+    Ok(residuals)
 }
 
 /// Runs of clusters of one instance, few enough rows to be kept at once.
@@ -75,22 +75,15 @@ fn batches(chosen: &[Chosen]) -> Vec<&[Chosen]> {
 }
 
 /// The rows of clusters of one instance; all other rows of the instance are empty.
-fn exact_rows(placed: &Placed, clusters: &[Chosen], monitor: &Monitor) -> Option<(Rows, Duration)> {
+fn exact_rows(placed: &Placed, clusters: &[Chosen], monitor: &Monitor) -> Result<(Rows, Duration)> {
     let world = &placed.world;
     let instance = clusters[0].instance;
     // For a receiver that sees everything already nothing is searched.
     let mut seen = vec![1.0; world.elements_of(instance).len()];
     clusters.iter().for_each(|cluster| seen[cluster.receivers.clone()].fill(0.0));
     let everyone: Vec<usize> = (0..placed.instances.len()).collect();
-    let request = Request {
-        world,
-        receivers: Audience::Instance(instance),
-        senders: &everyone,
-        columns: 0..world.nodes.len(),
-        already: Some(&seen),
-        resolution: EXACT,
-        revision: None,
-    };
+    let request =
+        Request::new(world, Audience::Instance(instance), &everyone, EXACT).with_already(Some(&seen));
     let timed = block(&request, monitor)?;
-    Some((timed.block, timed.time))
+    Ok((timed.block, timed.time))
 }

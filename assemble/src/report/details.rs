@@ -48,6 +48,7 @@ impl Report {
             self.column_sums[0], self.column_sums[1]
         ));
         lines.extend(self.verify.as_ref().map(Verify::line));
+        lines.extend(self.remarks.iter().cloned());
         lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
         lines.extend(self.outputs.iter().map(|output| format!("wrote {output}")));
         lines.join("\n") + "\n"

@@ -64,8 +64,10 @@ pub struct Report {
     /// What became of each part and block and why, one sentence each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub explained: Vec<String>,
-    /// What was ignored, dropped or corrected, one sentence each.
+    /// What calls for action: what was ignored, dropped or cannot be right, one sentence each.
     pub notes: Vec<String>,
+    /// What was corrected and needs no action, one sentence each.
+    pub remarks: Vec<String>,
     /// How element size and tolerance were chosen, if an error was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub advice: Option<Advice>,

@@ -1,4 +1,4 @@
-//! Sentences on what a person should know of the parts in their places: what stands in what, and what lies on what.
+//! Sentences on the parts in their places: notes that call for action, and remarks that do not.
 
 use crate::equation::coupling::Coupled;
 use crate::equation::interpenetration;
@@ -10,22 +10,13 @@ use crate::report::checks::checks;
 /// More sentences of one kind than this are made one.
 const FEW: usize = 4;
 
-/// All sentences.
-pub fn notes(
-    placed: &Placed,
-    coupled: &[Coupled],
-    nodes: &[InstanceSystem],
-    outcome: &Outcome,
-) -> Vec<String> {
-    standing_inside(placed, coupled)
-        .into_iter()
-        .chain(interpenetration::notes(placed))
-        .chain(checks(placed, nodes, outcome))
-        .collect()
+/// Sentences that call for action.
+pub fn notes(placed: &Placed, systems: &[InstanceSystem], outcome: &Outcome) -> Vec<String> {
+    interpenetration::notes(placed).into_iter().chain(checks(placed, systems, outcome)).collect()
 }
 
 /// What stands inside what: a sentence each, or, of more than a few, how many and the first of them.
-fn standing_inside(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
+pub fn remarks(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let corrected = coupled.iter().enumerate().filter_map(|(k, own)| Some((k, own.corrected.as_ref()?)));
     let inside: Vec<(String, bool)> = corrected

@@ -9,7 +9,7 @@ use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
 use crate::proof::{Measured, Proof};
 use crate::report::fates::seen_instances;
-use crate::report::notes::notes;
+use crate::report::notes::{notes, remarks};
 use crate::report::process::peak_rss;
 use crate::report::seconds::seconds;
 use crate::statistics::{largest_difference, mean_difference, rms_over_mean, row_sum_defect};
@@ -75,7 +75,8 @@ pub fn summary(run: &Run) -> Report {
         verify: run.classic.map(|classic| verification(placed, classic, outcome)),
         explained: vec![],
         advice: None,
-        notes: notes(placed, coupled, systems, outcome),
+        notes: notes(placed, systems, outcome),
+        remarks: remarks(placed, coupled),
         outputs: vec![],
     }
 }

@@ -156,16 +156,12 @@ impl Trials<'_> {
     /// Solve the scene with the elements of `settings`, and gather light at points.
     fn sample(&self, settings: &SolveSettings) -> Result<Sampled> {
         let Self { scene, store, places, monitor } = *self;
-        let stopped = || {
-            let remedy = "run the same command again: what was finished is in the cache";
-            Error::new(&scene.file, "stopped before the settings were found", "a complete run", remedy)
-        };
         let prepared = prepare(scene, &settings.preparation)?;
         let solved = solve_prepared(scene, prepared, settings, store, monitor, &Unobserved)?;
         if monitor.stopped() {
-            return Err(stopped());
+            return Err(Error::Stopped);
         }
-        let lights = light(&solved.gather(), solved.elements(), places, monitor).ok_or_else(stopped)?;
+        let lights = light(&solved.gather(), solved.elements(), places, monitor)?;
         Ok(Sampled::of(&lights, &solved))
     }
 }

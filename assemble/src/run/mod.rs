@@ -25,7 +25,7 @@ use equilux_bake::depfile;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Prepared, lost_digits_note, prepare};
-use equilux_formats::{Result, Scene, Store, Swept};
+use equilux_formats::{Result, Scene, Store, Swept, unless_stopped};
 use expected_work::expected_work;
 use job::Job;
 use std::path::Path;
@@ -55,7 +55,8 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let (placed, systems) = (&equation.placed, equation.systems());
     let proof = prove(placed, &systems, outcome, requests.exact_rows, monitor);
     let peak = peak_rss();
-    let classic = if requests.verify { classic(placed, &equation.driven_optics(), monitor) } else { None };
+    let compare = || unless_stopped(classic(placed, &equation.driven_optics(), monitor));
+    let classic = if requests.verify { compare()? } else { None };
     observer.settled(outcome, &solved.irradiance);
 
     let light = Light {

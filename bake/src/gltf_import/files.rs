@@ -1,7 +1,7 @@
 //! The only place where the importer touches the disk. Resolves references found in files, reads the files, lists what was
 //! read, and refuses whatever lies outside the scene's folder.
 
-use equilux_formats::{Error, Result};
+use equilux_formats::{Error, Problem, Result};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -56,13 +56,11 @@ impl Files {
 
     /// Like [`Files::read`]; errors name the file `from` and what in it refers to `path`.
     pub(super) fn read_referenced(&mut self, from: &Path, path: &Path, what: &str) -> Result<Vec<u8>> {
-        self.read(path).map_err(|error| {
-            Error::new(
-                from,
-                format!("{what} in {}, which {}", path.display(), error.found),
-                error.expected,
-                error.remedy,
-            )
+        self.read(path).map_err(|error| match error {
+            Error::Problem(Problem { found, expected, remedy, .. }) => {
+                Error::new(from, format!("{what} in {}, which {found}", path.display()), expected, remedy)
+            }
+            Error::Stopped => error,
         })
     }
 

@@ -5,7 +5,7 @@ use crate::monitor::Monitor;
 use crate::oven::prepare::PreparedPart;
 use crate::oven::prepare::{Preparation, prepare};
 use crate::oven::{Baked, Oven};
-use equilux_formats::{Error, Result, RowSumDefect, Store, Swept};
+use equilux_formats::{Error, Problem, Result, RowSumDefect, Store, Swept, unless_stopped};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -151,7 +151,7 @@ fn bake_file(
         let start = Instant::now();
         let baked = oven.bake(part);
         outcome.notes.extend(damage_notes(store));
-        let baked = baked?.ok_or_else(|| {
+        let baked = unless_stopped(baked)?.ok_or_else(|| {
             let remedy = "run the same command again: what was finished is in the cache";
             Error::new(file, format!("stopped while baking part `{}`", part.name), "a complete run", remedy)
         })?;
@@ -162,7 +162,7 @@ fn bake_file(
 
 /// A sentence for each cached file that could not be used since the last call.
 pub fn damage_notes(store: &Store) -> Vec<String> {
-    let note = |error: &Error| format!("{}: {}; it was made again", error.file.display(), error.found);
+    let note = |damage: &Problem| format!("{}: {}; it was made again", damage.file.display(), damage.found);
     store.take_damages().iter().map(note).collect()
 }
 

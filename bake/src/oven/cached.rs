@@ -63,16 +63,16 @@ pub enum Made<T> {
 }
 
 /// The value that `manifest` describes; `name` is what its older versions were called. Of all processes that share the
-/// cache one computes it, the others wait for that one. `compute` returns none if it was stopped, and then so does this.
+/// cache one computes it, the others wait for that one.
 /// It must not ask for anything cached itself: see [`Store::try_turn`].
 pub fn cached<T: Stored>(
     store: &Store,
     name: &str,
     manifest: &Manifest,
     monitor: &Monitor,
-    compute: impl FnOnce() -> Result<Option<T>>,
-) -> Result<Option<(T, Origin)>> {
-    cached_or_revised(store, name, manifest, monitor, || Ok(compute()?.map(Made::Whole)))
+    compute: impl FnOnce() -> Result<T>,
+) -> Result<(T, Origin)> {
+    cached_or_revised(store, name, manifest, monitor, || compute().map(Made::Whole))
 }
 
 /// The same where `make` may know an older value to start from.
@@ -81,8 +81,8 @@ pub fn cached_or_revised<T: Stored>(
     name: &str,
     manifest: &Manifest,
     monitor: &Monitor,
-    make: impl FnOnce() -> Result<Option<Made<T>>>,
-) -> Result<Option<(T, Origin)>> {
+    make: impl FnOnce() -> Result<Made<T>>,
+) -> Result<(T, Origin)> {
     let mut found = look_up(store, name, manifest);
     let mut _turn = None;
     if found.is_err() {
@@ -93,7 +93,7 @@ pub fn cached_or_revised<T: Stored>(
     let (value, origin) = match found {
         Ok(value) => (value, Origin::Reused),
         Err(reason) => {
-            let Some(made) = make()? else { return Ok(None) };
+            let made = make()?;
             if let Made::Whole(value) | Made::Revised(value, _) = &made {
                 store.save(manifest, value)?;
             }
@@ -108,7 +108,7 @@ pub fn cached_or_revised<T: Stored>(
         }
     };
     store.remember(name, manifest)?;
-    Ok(Some((value, origin)))
+    Ok((value, origin))
 }
 
 /// The turn to compute; none if the monitor is stopped before another process is done.

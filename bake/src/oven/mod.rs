@@ -12,7 +12,7 @@ use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::outside::answers;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
-use crate::treecode::{Audience, Request, Resolution, block};
+use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use cached::{Origin, cached, foreseen};
 use equilux_formats::{
@@ -68,29 +68,21 @@ impl Oven<'_> {
         self.store.read_ahead::<BakedLight>(&lights);
     }
 
-    /// Bake one part, or take from the cache what is there. None if the monitor was stopped.
-    pub fn bake(&self, part: &PreparedPart) -> Result<Option<Baked>> {
+    /// Bake one part, or take from the cache what is there. Fails if the monitor was stopped before its form factors were
+    /// known.
+    pub fn bake(&self, part: &PreparedPart) -> Result<Baked> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
         let (mut form_factor_time, receivers) = (Duration::ZERO, part.geometry.elements.len());
         let found = cached(self.store, &self.name(part, "form factors"), &manifest, self.monitor, || {
             self.monitor.begin(format!("form factors of {}", part.name), receivers, receivers as f64);
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
-            let request = Request {
-                world: &world,
-                receivers: Audience::Instance(0),
-                senders: &[0],
-                columns: world.nodes_of(0),
-                already: None,
-                resolution: self.resolution,
-                revision: None,
-            };
-            Ok(block(&request, self.monitor).map(|timed| {
-                form_factor_time = timed.time;
-                BakedGeometry { geometry: without_materials(&part.geometry), self_block: timed.block }
-            }))
-        })?;
-        let Some((geometry, form_factors)) = found else { return Ok(None) };
+            let request = Request::of_self(&world, &[0], self.resolution);
+            let timed = block(&request, self.monitor)?;
+            form_factor_time = timed.time;
+            Ok(BakedGeometry { geometry: without_materials(&part.geometry), self_block: timed.block })
+        });
+        let (geometry, form_factors) = found?;
         if form_factors.is_reused() {
             self.monitor.spare(receivers as f64);
         }
@@ -116,7 +108,7 @@ impl Oven<'_> {
             local,
         };
         let light_time = start.elapsed();
-        Ok(Some(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time }))
+        Ok(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time })
     }
 
     /// The light of a baked part on its own as an instance has it repainted, and where that came from; none if the part's
@@ -155,9 +147,8 @@ impl Oven<'_> {
                 return Err(self.endless_light(part.name, &material(element)));
             }
             let local = local_equilibrium(part.self_block, part.geometry, optics, part.solver);
-            Ok(Some(BakedLight { local, optics: optics.clone() }))
-        })?
-        .expect("a local equilibrium is not stopped halfway");
+            Ok(BakedLight { local, optics: optics.clone() })
+        })?;
         Ok((light.local, origin))
     }
 

@@ -24,7 +24,7 @@ mod viewers;
 use crate::monitor::Monitor;
 use crate::world::World;
 use descent::Descent;
-use equilux_formats::Rows;
+use equilux_formats::{Error, Result, Rows};
 use std::time::Duration;
 
 pub use request::{Audience, Request};
@@ -46,32 +46,24 @@ pub struct Timed {
     pub time: Duration,
 }
 
-/// Every form factor of some receivers to all elements of a world, in full. None if the monitor was stopped.
-pub fn exact_rows(world: &World, receivers: Audience, monitor: &Monitor) -> Option<Timed> {
+/// Every form factor of some receivers to all elements of a world, in full. Fails if the monitor was stopped.
+pub fn exact_rows(world: &World, receivers: Audience, monitor: &Monitor) -> Result<Timed> {
     let everyone: Vec<usize> = (0..world.instances()).collect();
-    let request = Request {
-        world,
-        receivers,
-        senders: &everyone,
-        columns: 0..world.nodes.len(),
-        already: None,
-        resolution: EXACT,
-        revision: None,
-    };
+    let request = Request::new(world, receivers, &everyone, EXACT);
     block(&request, monitor)
 }
 
-/// Compute a block on all threads. None if the monitor was stopped.
-pub fn block(request: &Request, monitor: &Monitor) -> Option<Timed> {
+/// Compute a block on all threads. Fails if the monitor was stopped.
+pub fn block(request: &Request, monitor: &Monitor) -> Result<Timed> {
     let found = Descent { request, monitor }.rows();
     if monitor.stopped() {
-        return None;
+        return Err(Error::Stopped);
     }
     let older = request.revision.as_ref().filter(|older| older.is_in_place(&request.columns));
     let unchanged = older.filter(|_| found.changed == 0).map(|older| older.old.clone());
     let is_unchanged = unchanged.is_some();
     let made = || Rows::from_groups(request.columns.len(), found.groups, request.resolution.precision);
-    Some(Timed {
+    Ok(Timed {
         block: unchanged.unwrap_or_else(made),
         row_sums: found.sums,
         computed: found.computed.iter().map(|&count| count as usize).sum(),

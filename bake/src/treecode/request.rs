@@ -6,7 +6,7 @@ use crate::world::World;
 use equilux_formats::Element;
 use std::ops::Range;
 
-/// Who receives.
+/// The receivers of a block.
 #[derive(Debug, Clone, Copy)]
 pub enum Audience<'a> {
     /// The elements of an instance of the world.
@@ -26,11 +26,12 @@ impl<'a> Audience<'a> {
     }
 }
 
-/// What is asked for: one block.
+/// One block to compute.
+
 pub struct Request<'a> {
     /// The geometry.
     pub world: &'a World,
-    /// Who receives.
+    /// The receivers of a block.
     pub receivers: Audience<'a>,
     /// The instances that send.
     pub senders: &'a [usize],
@@ -42,4 +43,39 @@ pub struct Request<'a> {
     pub resolution: Resolution,
     /// The block as it was before the scene changed, if it is only to be brought up to date.
     pub revision: Option<Revision<'a>>,
+}
+
+impl<'a> Request<'a> {
+    /// The whole block from these receivers to the elements of these instances; columns count through all nodes of the world.
+    pub fn new(
+        world: &'a World,
+        receivers: Audience<'a>,
+        senders: &'a [usize],
+        resolution: Resolution,
+    ) -> Self {
+        let columns = 0..world.nodes.len();
+        Self { world, receivers, senders, columns, already: None, resolution, revision: None }
+    }
+
+    /// The self block of an instance, whose columns count through its own nodes: `senders` is that instance.
+    pub fn of_self(world: &'a World, senders: &'a [usize; 1], resolution: Resolution) -> Self {
+        let [instance] = *senders;
+        Self::new(world, Audience::Instance(instance), senders, resolution)
+            .with_columns(world.nodes_of(instance))
+    }
+
+    /// Columns count through these nodes.
+    pub fn with_columns(self, columns: Range<usize>) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// Each receiver is known to see this share of its hemisphere already, of other senders.
+    pub fn with_already(self, already: Option<&'a [f64]>) -> Self {
+        Self { already, ..self }
+    }
+
+    /// The block is an older one, brought up to date, if there is one.
+    pub fn with_revision(self, revision: Option<Revision<'a>>) -> Self {
+        Self { revision, ..self }
+    }
 }

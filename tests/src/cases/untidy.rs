@@ -72,7 +72,7 @@ fn furnace(reflectance: [f64; 3]) -> Node {
 fn refused(nodes: &[Node], cells: usize) -> Finding {
     let said = match solved(nodes, &Setting::metres(0.5).cut(cells)) {
         Ok(solved) => format!("an answer after {} rounds", solved.report.rounds.len()),
-        Err(error) => error.found,
+        Err(error) => error.to_string(),
     };
     let holds = said.contains("grows without end");
     Finding::statement("refused: light grows without end", said, holds)

@@ -20,7 +20,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::prepare::{Prepared, PreparedPart, lost_digits_note, prepare};
 use equilux_bake::world::World;
-use equilux_formats::{Instance, Result, Store};
+use equilux_formats::{Instance, Result, Store, unless_stopped};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use unseen::unseen_pairs;
@@ -65,7 +65,8 @@ pub fn plan(job: &Job) -> Result<Plan> {
     stopped.stop();
     let resolution = job.settings.preparation.resolution;
     let oven = Oven { store: &store, file: &job.scene, resolution, monitor: &stopped };
-    let baked = prepared.parts.iter().map(|part| oven.bake(part)).collect::<Result<Vec<_>>>()?;
+    let baked =
+        prepared.parts.iter().map(|part| unless_stopped(oven.bake(part))).collect::<Result<Vec<_>>>()?;
 
     let placed = |i: &Instance| (&prepared.parts[i.part.index()].geometry, i.placement);
     let world = World::new(prepared.instances.iter().map(placed));
