@@ -1,6 +1,7 @@
 //! The classic matrix radiosity of the whole scene, on the same elements: what the parts must agree with.
 
 use crate::placed::Placed;
+use crate::proof::exact_rows::ROWS_PER_EXACT_ROW;
 use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
@@ -40,7 +41,7 @@ fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Option<(Rows, Duration)> 
     let element: Vec<u32> =
         (0..world.nodes.len()).map(|node| world.element_of(node).map_or(u32::MAX, |e| e as u32)).collect();
     let (mut rows, mut time) = (Vec::new(), Duration::ZERO);
-    monitor.begin("classic matrix", world.elements.len());
+    monitor.begin("classic matrix", world.elements.len(), ROWS_PER_EXACT_ROW * world.elements.len() as f64);
     for instance in 0..placed.instances.len() {
         let timed = exact_rows(world, Audience::Instance(instance), monitor)?;
         time += timed.time;

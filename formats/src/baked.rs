@@ -2,7 +2,8 @@
 
 use crate::geometry::{Geometry, Optics, Tints};
 use crate::part::{LocalSolver, Material};
-use crate::rows::{Rgb, Rows};
+use crate::rgb::Rgb;
+use crate::rows::Rows;
 use serde::{Deserialize, Serialize};
 
 /// A part with everything that can be computed without knowing the scene.

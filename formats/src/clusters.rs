@@ -3,7 +3,7 @@
 //! Nodes are numbered: first the elements, then the clusters, every cluster before the clusters inside it. The first
 //! cluster holds everything.
 
-use crate::rows::Rgb;
+use crate::rgb::Rgb;
 
 /// A binary tree over a part's elements.
 #[derive(Debug, Clone, PartialEq, Default)]

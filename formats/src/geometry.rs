@@ -2,7 +2,7 @@
 
 use crate::clusters::ClusterTree;
 use crate::ids::{FaceId, MaterialId};
-use crate::rows::Rgb;
+use crate::rgb::Rgb;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 

@@ -5,12 +5,12 @@
 //! element, or a cluster of elements (see [`crate::ClusterTree`]) whose form factor is as exact as an element's.
 
 mod products;
+mod row_sums;
 
+use crate::rgb::Rgb;
 use products::products;
+pub use row_sums::RowSumDefect;
 use serde::{Deserialize, Serialize};
-
-/// Red, green, blue; linear, BT.709 primaries.
-pub type Rgb = [f64; 3];
 
 /// How the numbers of a block are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -200,6 +200,11 @@ impl Rows {
             Values::Full(values) => values[range].iter().sum(),
             Values::Single(values) => values[range].iter().map(|&value| f64::from(value)).sum(),
         }
+    }
+
+    /// How far the row sums are from one.
+    pub fn row_sum_defect(&self) -> RowSumDefect {
+        RowSumDefect::of(&(0..self.receivers()).map(|i| self.row_sum(i)).collect::<Vec<_>>())
     }
 
     /// Number of form factors of one row that are not zero.

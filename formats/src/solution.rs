@@ -1,7 +1,7 @@
 //! The light of a whole scene, kept so that the next run may start from it.
 
 use crate::fingerprint::Key;
-use crate::rows::Rgb;
+use crate::rgb::Rgb;
 use serde::{Deserialize, Serialize};
 
 /// The radiosity of a scene.

@@ -1,7 +1,7 @@
 //! How colours vary over a material: images, and the triangles of the source mesh with their places in them.
 
 use crate::ids::MaterialId;
-use crate::rows::Rgb;
+use crate::rgb::Rgb;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 

@@ -52,7 +52,7 @@ fn main() {
             first.map_or(String::new(), |first| format!("{:.1} ×", first / seconds)),
         );
         if std::env::var_os("EQUILUX_TEXT").is_some() {
-            println!("{}", report.text());
+            println!("{}", report.details());
         }
         seconds
     };

@@ -8,8 +8,18 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// Jacobi with a thousandth absorbed needs hundreds of rounds; down to rounding, even more.
-const ARGUMENTS: [&str; 8] =
-    ["scene.glb", "--element-size", "0.125", "--exchange", "jacobi", "--error", "0", "--json"];
+const ARGUMENTS: [&str; 10] = [
+    "scene.glb",
+    "--element-size",
+    "0.125",
+    "--exchange",
+    "jacobi",
+    "--error",
+    "0",
+    "--json",
+    "--pictures",
+    "rounds",
+];
 
 #[test]
 fn an_interrupted_exchange_ends_after_the_round_and_writes_everything() {

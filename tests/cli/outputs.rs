@@ -15,7 +15,7 @@ fn names(workshop: &Workshop) -> Vec<String> {
 #[test]
 fn a_run_leaves_a_picture_of_each_round_and_the_result() {
     let workshop = Workshop::with(&furnished());
-    let arguments = ["scene.glb", "--element-size", "1", "--rounds", "3"];
+    let arguments = ["scene.glb", "--element-size", "1", "--pictures", "rounds", "--rounds", "3"];
     let ended = workshop.run("assemble", &arguments);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let rounds = ["round-001.png", "round-002.png", "round-003.png"];
@@ -23,18 +23,35 @@ fn a_run_leaves_a_picture_of_each_round_and_the_result() {
     assert_eq!(names(&workshop), expected);
 
     // A shorter run takes the third picture away; the comparison adds one.
-    let ended = workshop.run("assemble", &[&arguments[..4], &["2", "--verify"]].concat());
+    let ended = workshop.run("assemble", &[&arguments[..6], &["2", "--verify"]].concat());
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let expected =
         [&["classic.png", "final.png", "result.glb"], &rounds[..2], &["rounds.png", "wireframe.png"]]
             .concat();
     assert_eq!(names(&workshop), expected);
+
+    // By default there is the result alone, and nothing stale beside it.
+    let ended = workshop.run("assemble", &arguments[..3]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(names(&workshop), ["final.png", "result.glb"]);
+    let lines = ended.stdout.lines().filter(|line| !line.starts_with("note: ")).count();
+    assert!((3..=6).contains(&lines), "a few lines for a person, not\n{}", ended.stdout);
 }
 
 #[test]
 fn of_many_rounds_the_first_eight_powers_of_two_and_the_last_have_pictures() {
     let workshop = Workshop::with(&echoing(0.01));
-    let arguments = ["scene.glb", "--element-size", "1", "--exchange", "jacobi", "--rounds", "21"];
+    let arguments = [
+        "scene.glb",
+        "--element-size",
+        "1",
+        "--exchange",
+        "jacobi",
+        "--rounds",
+        "21",
+        "--pictures",
+        "rounds",
+    ];
     let ended = workshop.run("assemble", &arguments);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     let rounds = [1, 2, 3, 4, 5, 6, 7, 8, 16, 21].map(|round| format!("round-{round:03}.png"));
@@ -74,7 +91,7 @@ fn the_table_has_a_header_and_a_line_an_element() {
 #[test]
 fn the_text_says_what_took_how_long_and_where_things_are() {
     let ended = Workshop::with(&furnished())
-        .run("assemble", &["scene.glb", "--element-size", "1", "--rounds", "2", "--verify"]);
+        .run("assemble", &["scene.glb", "--element-size", "1", "--rounds", "2", "--verify", "--verbose"]);
     for words in
         ["T1", "T2", "T3", "row sums", "peak", "energy", "classic matrix: largest relative difference"]
     {

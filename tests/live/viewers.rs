@@ -67,7 +67,8 @@ fn only_the_page_itself_is_answered() {
 #[test]
 fn stop_ends_the_exchange_and_everything_is_written_though_a_viewer_never_reads() {
     let workshop = Workshop::with(&echoing(1e-4));
-    let mut page = endless(&workshop, &["--json", "--lightmaps", "--texel-size", "0.5"]);
+    let mut page =
+        endless(&workshop, &["--json", "--lightmaps", "--texel-size", "0.5", "--pictures", "rounds"]);
     let host = format!("Host: {}", page.host());
     let path = page.path("field/radiosity?after=0");
     let _asleep: Vec<_> = ["events", "model"].map(|name| page.open("GET", &page.path(name), &[&host])).into();

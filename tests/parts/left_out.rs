@@ -77,6 +77,6 @@ fn parts_that_cannot_see_each_other_are_not_coupled() {
     assert_eq!(count(&report, UNSEEN), 4, "{:?}", report.blocks.coupling_left_out);
     let difference = report.verify.as_ref().expect("asked for").max_rel_diff;
     assert!(difference <= 1e-10, "{difference} away from the whole");
-    let said = report.text();
+    let said = report.details();
     assert!(said.contains(&format!("left out: 4 {UNSEEN}")), "nothing of it in\n{said}");
 }

@@ -53,7 +53,7 @@ impl Dense {
     pub fn by_rays(elements: &[Element], count: usize, monitor: &Monitor) -> Option<Self> {
         let size = elements.len();
         let index = RayIndex::new(elements);
-        monitor.begin("rays", size);
+        monitor.begin("rays", size, size as f64);
         let row = |i: usize| {
             let start = Instant::now();
             let row = if monitor.stopped() { vec![] } else { rays::row(elements, &index, i, count) };

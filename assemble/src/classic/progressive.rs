@@ -33,7 +33,7 @@ pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> 
         unshot: optics.emission.clone(),
         time: Duration::ZERO,
     };
-    monitor.begin("shots", 0);
+    monitor.begin("shots", 0, 0.0);
     let mut shots = 0;
     while power(&light.unshot) > unshot * emitted && shots < SHOTS * elements.len() {
         let brightest = brightest(elements, &light.unshot);

@@ -31,6 +31,9 @@ struct Arguments {
     command: Option<Task>,
     #[command(flatten)]
     assembly: Assembly,
+    /// Also print the paper's table of steps, all rounds, sums and sizes, and all notes
+    #[arg(long)]
+    verbose: bool,
     /// Say in a sentence for every part and block whether it was computed, reused or left out, and why
     #[arg(long)]
     explain: bool,
@@ -116,13 +119,17 @@ fn run(arguments: Arguments) -> anyhow::Result<String> {
 }
 
 fn assemble(arguments: &Arguments) -> anyhow::Result<String> {
-    let Arguments { assembly, explain, target_error, live, .. } = arguments;
+    let Arguments { assembly, verbose, explain, target_error, live, .. } = arguments;
     assembly.options.set_threads()?;
     let job = assembly.job();
     let job = Job { outputs: OutputRequests { explain: *explain, ..job.outputs }, ..job };
     let invocation =
         Invocation { job, target_error: *target_error, live: *live, json: assembly.options.json };
-    if arguments.watch { watched(&invocation) } else { once(&invocation, Report::text) }
+    if arguments.watch {
+        watched(&invocation)
+    } else {
+        once(&invocation, if *verbose { Report::details } else { Report::text })
+    }
 }
 
 /// Do something with progress shown, until Ctrl-C.

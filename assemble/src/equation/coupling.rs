@@ -200,7 +200,11 @@ impl Coupler<'_> {
         let (mut time, mut computed, mut computed_by_row) = (Duration::ZERO, 0, vec![]);
         let found = cached_or_revised(self.store, &name, &manifest, self.monitor, || {
             let receivers = self.placed.world.elements_of(instance).len();
-            self.monitor.begin(format!("{what} of {}", self.placed.instances[instance].name), receivers);
+            self.monitor.begin(
+                format!("{what} of {}", self.placed.instances[instance].name),
+                receivers,
+                receivers as f64,
+            );
             let last = self.store.last_manifest(&name).and_then(|last| {
                 Older::last(self.placed, self.store, instance, &last, &manifest, request.columns.clone())
             });

@@ -37,7 +37,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
     let Arriving { irradiance, unlit } = if lights.lamps.is_empty() && lights.suns.is_empty() {
         Arriving { irradiance: dark, unlit: vec![] }
     } else {
-        coupler.monitor.begin("light of lamps", 1);
+        coupler.monitor.begin("light of lamps", 0, 0.0);
         of_lamps(placed, lights)
     };
     let mut irradiance = placed.split(&irradiance);
@@ -49,6 +49,9 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Option<Direct>> {
         for (k, own) in irradiance.iter_mut().enumerate() {
             let Some((rows, new)) = sky_block(coupler, &world, sky, k)? else { return Ok(None) };
             computed += new;
+            if new == 0 {
+                coupler.monitor.spare(own.len() as f64);
+            }
             own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum = added(*sum, h));
         }
     }
@@ -110,6 +113,7 @@ fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> R
         coupler.monitor.begin(
             format!("sky of {}", coupler.placed.instances[instance].name),
             world.elements_of(instance).len(),
+            world.elements_of(instance).len() as f64,
         );
         let request = Request {
             world,

@@ -15,6 +15,7 @@ use crate::equation::direct::{Direct, direct, driven};
 use crate::equation::environment::Environment;
 use crate::equation::observer::Observer;
 use crate::equation::optics::{joined, whole_optics};
+use crate::exchange::ROWS_PER_ELEMENT;
 use crate::exchange::system::InstanceSystem;
 use crate::gather::Gather;
 use crate::gather::lights::Lights;
@@ -59,6 +60,7 @@ impl Equation {
             Error::new(oven.file, "stopped before the form factors were complete", "a complete run", remedy)
         };
         observer.prepared(scene, &prepared);
+        oven.monitor.expect(expected_rows(&prepared, environment));
         let mut placed = bake_parts(oven, prepared, observer)?.ok_or_else(stopped)?;
         observer.placed(&placed, &scene.cameras);
         let coupled = couple(&coupler(oven, &placed), observer)?.ok_or_else(stopped)?;
@@ -119,6 +121,14 @@ pub fn systems<'a>(
         .collect()
 }
 
+/// Rows of the scene's blocks, and what the exchange costs beside them.
+fn expected_rows(prepared: &Prepared, environment: &Environment) -> f64 {
+    let parts: usize = prepared.parts.iter().map(|part| part.geometry.elements.len()).sum();
+    let elements = prepared.elements();
+    let sky = if environment.sky.is_some() { elements } else { 0 };
+    (parts + elements + sky) as f64 + ROWS_PER_ELEMENT * elements as f64
+}
+
 fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<Option<Placed>> {
     oven.read_ahead(&prepared.parts);
     let mut parts: Vec<Baked> = Vec::new();
@@ -139,7 +149,12 @@ fn couple(coupler: &Coupler, observer: &dyn Observer) -> Result<Option<Vec<Coupl
     coupler.read_ahead();
     let couple = |k: usize| {
         let coupled = coupler.couple(k)?;
-        coupled.iter().for_each(|coupled| observer.coupled(k, coupled));
+        if let Some(coupled) = &coupled {
+            observer.coupled(k, coupled);
+            if coupled.origin.is_reused() {
+                coupler.monitor.spare(coupler.placed.world.elements_of(k).len() as f64);
+            }
+        }
         Ok(coupled)
     };
     (0..coupler.placed.instances.len()).map(couple).collect()

@@ -29,6 +29,9 @@ use settings::{Goal, Method};
 use step_times::{StepTimes, timed};
 use system::InstanceSystem;
 
+/// An exchange takes about as much time as this many rows of form factors an element.
+pub const ROWS_PER_ELEMENT: f64 = 0.05;
+
 /// Exchange light until the goal is met, no further progress is possible, or `monitor` or `listener` stops it. Starts from
 /// `start`, one vector of radiosities (W/m²) an instance, or from darkness, as the paper does.
 pub fn exchange(
@@ -41,8 +44,9 @@ pub fn exchange(
 ) -> Outcome {
     let mut times = StepTimes::none(systems.len());
     let groups = timed(&mut times.overhead.account, || groups(systems));
+    let elements: usize = systems.iter().map(|system| system.areas.len()).sum();
     let mut scene = SceneOutcome::new(systems);
-    monitor.begin("exchange", 0);
+    monitor.begin("exchange", 0, ROWS_PER_ELEMENT * elements as f64);
     for group in &groups {
         let solver = GroupSolver::new(group, method, goal, &mut times.overhead);
         let column_sums = solver.column_sums();

@@ -76,6 +76,9 @@ pub fn places(table: &Table, origin: DVec3) -> Result<Vec<Place>> {
     points.into_iter().zip(normals).enumerate().map(place).collect()
 }
 
+/// Light at a point takes about as much time as this many rows of form factors.
+pub const ROWS_PER_POINT: f64 = 1.0;
+
 /// The light at places, none for those on no surface of these `elements`, which are the scene's. None at all if the monitor
 /// is stopped meanwhile.
 pub fn light(
@@ -93,7 +96,7 @@ pub fn light(
     // Points of one element share most of their search.
     found.sort_by_key(|&(_, _, element)| element);
     let mut lights = vec![None; places.len()];
-    monitor.begin("light of points", found.len());
+    monitor.begin("light of points", found.len(), ROWS_PER_POINT * found.len() as f64);
     for batch in found.chunks(BATCH) {
         if monitor.stopped() && !was_stopped {
             return None;

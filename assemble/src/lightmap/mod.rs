@@ -85,6 +85,9 @@ enum Holds {
     Chart,
 }
 
+/// A texel takes about as much time as this many rows of form factors.
+pub const ROWS_PER_TEXEL: f64 = 0.1;
+
 impl<'a> Lightmap<'a> {
     /// The lightmap of `scene`. `irradiance` gives texels theirs, W/m² of linear RGB, not divided by π, in their order.
     /// None if the monitor was stopped meanwhile; a stop that was asked for before was for something else.
@@ -95,13 +98,19 @@ impl<'a> Lightmap<'a> {
         monitor: &Monitor,
     ) -> Option<Self> {
         let tiles = atlas.tiles();
-        let values = values(scene, atlas, &tiles, irradiance, monitor)?;
+        let values = values(scene, atlas, &tiles, irradiance, ("lightmap", ROWS_PER_TEXEL), monitor)?;
         let (mut irradiance, holds) = with_margins(values, &tiles);
         let mut tints = None;
         if let Some(coats) = tints::coats(scene) {
             let tint = |of: Of| {
                 let tint = |texels: &Texels| tints::tints(scene, &coats, texels, of);
-                Some(with_margins(self::values(scene, atlas, &tiles, tint, monitor)?, &tiles).0)
+                Some(
+                    with_margins(
+                        self::values(scene, atlas, &tiles, tint, ("textures of the lightmap", 0.0), monitor)?,
+                        &tiles,
+                    )
+                    .0,
+                )
             };
             tints = Some([tint(Of::Reflectance)?, tint(Of::Emission)?]);
         }
@@ -118,7 +127,14 @@ impl<'a> Lightmap<'a> {
         directions: impl Fn(&Texels) -> Vec<[f64; 3]> + Sync,
         monitor: &Monitor,
     ) -> Option<Self> {
-        let values = values(self.scene, self.atlas, &self.tiles, directions, monitor)?;
+        let values = values(
+            self.scene,
+            self.atlas,
+            &self.tiles,
+            directions,
+            ("directions of the lightmap", ROWS_PER_TEXEL),
+            monitor,
+        )?;
         self.directions = Some(with_margins(values, &self.tiles).0);
         Some(self)
     }
@@ -144,17 +160,20 @@ impl<'a> Lightmap<'a> {
     }
 }
 
-/// The irradiance of texels that hold some of a chart, for each tile; none if the monitor was stopped meanwhile.
+/// The irradiance of texels that hold some of a chart, for each tile, a step of progress of this name and cost; none if the
+/// monitor was stopped meanwhile.
 fn values(
     scene: &Scene,
     atlas: &Atlas,
     tiles: &[Tile],
     irradiance: impl Fn(&Texels) -> Vec<Rgb> + Sync,
+    (what, rows_per_texel): (&str, f64),
     monitor: &Monitor,
 ) -> Option<Vec<Vec<Option<Rgb>>>> {
     let in_bands = |(number, tile): (usize, &Tile)| bands(tile.size).map(move |rows| (number, rows));
     let bands: Vec<(usize, Range<u32>)> = tiles.iter().enumerate().flat_map(in_bands).collect();
-    monitor.begin("lightmap", bands.len());
+    let texels: f64 = tiles.iter().map(|tile| tile.size.map(f64::from)).map(|[w, h]| w * h).sum();
+    monitor.begin(what, bands.len(), rows_per_texel * texels);
     let before = monitor.stopped();
     let light_in = |(number, rows): &(usize, Range<u32>)| -> Option<Vec<([u32; 2], Rgb)>> {
         if monitor.stopped() != before {

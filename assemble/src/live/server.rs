@@ -195,7 +195,7 @@ async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event
 
 /// What is new since, if anything is.
 fn news(site: &Site, sent: &mut Sent) -> Option<News> {
-    let (stage, done) = site.monitor.now();
+    let progress = site.monitor.now();
     let state = site.board.state();
     let run = state.status.run;
     let from = if sent.run == run { sent.points } else { 0 };
@@ -205,7 +205,7 @@ fn news(site: &Site, sent: &mut Sent) -> Option<News> {
         status: Some(state.status_number),
         points: from + points.len(),
         now: state.history.last(),
-        stage: Some((stage.what, done, stage.total)),
+        stage: Some((progress.step.what, progress.done, progress.step.total)),
     };
     if now == *sent {
         return None;

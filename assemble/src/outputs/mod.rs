@@ -35,6 +35,12 @@ pub const RESULT: &str = "result.glb";
 /// The first rounds and the end in one picture.
 const STRIP: &str = "rounds.png";
 
+/// The elements.
+const WIREFRAME: &str = "wireframe.png";
+
+/// The classic solution.
+const CLASSIC: &str = "classic.png";
+
 /// So many rounds are in it.
 const FIRST_ROUNDS: usize = 3;
 
@@ -202,7 +208,7 @@ fn draw_all(
         if requests.pictures == Pictures::Rounds { light.solved.outcome.rounds.as_slice() } else { &[] };
     let shown: Vec<(usize, &[Rgb])> =
         rounds.iter().filter_map(|round| Some((round.number, round.radiosity.as_deref()?))).collect();
-    monitor.begin("pictures", shown.len());
+    monitor.begin("pictures", shown.len(), 0.0);
     shown.par_iter().try_for_each(|(number, radiosity)| {
         draw(&picture_of(*number), radiosity)?;
         monitor.advance(1);
@@ -210,10 +216,10 @@ fn draw_all(
     })?;
     let mut written: Vec<PathBuf> = vec![draw("final.png", light.solved.radiosity())?];
     if let Some(classic) = light.classic {
-        written.push(draw("classic.png", &classic.radiosity)?);
+        written.push(draw(CLASSIC, &classic.radiosity)?);
     }
     if requests.pictures == Pictures::Rounds {
-        let edges = folder.join("wireframe.png");
+        let edges = folder.join(WIREFRAME);
         write_png(&edges, &wireframe(canvas, light.solved.elements()))?;
         written.push(edges);
         let first = shown.iter().take(FIRST_ROUNDS).map(|(_, radiosity)| *radiosity);
@@ -265,7 +271,7 @@ fn write_tables(
     Ok(written)
 }
 
-/// Make the folder, and take away the rounds of an earlier run, which may have had more of them.
+/// Make the folder, and remove the pictures of an earlier run that this one may not overwrite.
 fn prepare_folder(folder: &Path) -> Result<()> {
     let failed = |error: std::io::Error| unusable(folder, &error);
     std::fs::create_dir_all(folder).map_err(failed)?;
@@ -275,7 +281,7 @@ fn prepare_folder(folder: &Path) -> Result<()> {
         let number = name.strip_prefix("round-").and_then(|rest| rest.strip_suffix(".png"));
         let is_round =
             number.is_some_and(|number| number.len() >= 3 && number.bytes().all(|b| b.is_ascii_digit()));
-        if is_round || name == STRIP {
+        if is_round || [STRIP, WIREFRAME, CLASSIC].contains(&name.as_ref()) {
             std::fs::remove_file(entry.path()).map_err(failed)?;
         }
     }

@@ -10,6 +10,9 @@ use equilux_bake::treecode::{Audience, EXACT, Request, block};
 use equilux_formats::{Rgb, Rows};
 use std::time::Duration;
 
+/// An exact row takes about as much time as this many rows with clusters.
+pub const ROWS_PER_EXACT_ROW: f64 = 4.0;
+
 /// At most about so many exact rows are in memory at a time.
 const AT_ONCE: usize = 1024;
 
@@ -34,7 +37,8 @@ pub fn residuals(
 ) -> Option<Residuals> {
     let mut all = Vec::new();
     nodes.iter().zip(radiosity).for_each(|(node, b)| node.clusters.append_means(b, &mut all));
-    monitor.begin("exact rows", chosen.iter().map(|cluster| cluster.receivers.len()).sum());
+    let count: usize = chosen.iter().map(|cluster| cluster.receivers.len()).sum();
+    monitor.begin("exact rows", count, ROWS_PER_EXACT_ROW * count as f64);
     let mut residuals = Residuals { values: vec![], form_factors: 0, time: Duration::ZERO };
     for batch in batches(chosen) {
         let (rows, time) = exact_rows(placed, batch, monitor)?;

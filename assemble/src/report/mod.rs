@@ -2,6 +2,7 @@
 
 pub mod advice;
 mod checks;
+mod details;
 pub mod fates;
 pub(crate) mod light_notes;
 mod notes;

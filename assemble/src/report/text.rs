@@ -1,193 +1,151 @@
-//! The report for a person.
+//! The report in a few lines for a person: the scene, its time, its error, notes, and where the files are.
 
-use super::{ErrorReport, Report, RoundReport};
+use super::{ErrorReport, Report, Verify};
 use crate::report::advice::Advice;
 use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Notes beyond this number are counted.
+const MOST_NOTES: usize = 6;
+
+/// The state of an exchange that ended above its error bound.
+pub const NOT_CONVERGED: &str = "not converged: stopped early, or limited by rounding";
 
 impl Report {
-    /// What was written and what is to be said of it, for a person.
+    /// The files that were written and the notes on them, for a person.
     pub fn outputs_text(&self) -> String {
-        let notes = self.notes.iter().map(|note| format!("note: {note}"));
-        let wrote = self.outputs.iter().map(|path| format!("wrote {path}"));
-        notes.chain(wrote).map(|line| line + "\n").collect()
+        self.notes_lines().into_iter().chain(self.written_lines()).map(|line| line + "\n").collect()
     }
 
-    /// The report for a person, a few lines and two tables.
+    /// The report in a few lines for a person.
     pub fn text(&self) -> String {
         let mut lines = vec![
             format!(
-                "{}: {} elements ({}), {} parts in {} places",
+                "{}: {} elements ({}), {} in {}; {:.2} s",
                 self.scene,
                 self.elements,
                 self.element_size,
-                self.parts.len(),
-                self.instances
+                counted(self.parts.len(), "part"),
+                counted(self.instances, "place"),
+                self.seconds.total
             ),
-            self.blocks_line(),
+            self.computed_line(),
+            self.error_line(),
         ];
+        lines.extend(self.verify.as_ref().map(Verify::line));
         lines.extend(self.advice.iter().flat_map(Advice::lines));
-        lines.extend(left_out_line(&self.blocks.coupling_left_out));
         lines.extend(self.explained.iter().cloned());
-        lines.extend(self.step_lines());
-        lines.extend(self.round_lines());
-        lines.extend(self.error.lines(self.elements));
-        lines.push(format!(
-            "row sums: at most {:.1e} from 1, {:.1e} on average (open scenes stay below 1)",
-            self.row_sum_defect.max, self.row_sum_defect.mean
-        ));
-        lines.push(format!(
-            "memory: {} in blocks, largest {}; the classic matrix {}{}",
-            bytes(self.bytes.stored),
-            bytes(self.bytes.largest_block),
-            bytes(self.bytes.dense),
-            self.bytes.peak_rss.map_or(String::new(), |peak| format!("; peak {}", bytes(peak)))
-        ));
-        lines.push(format!(
-            "energy (W, RGB): emitted {}, absorbed {}, escaped {}, still travelling {}",
-            rgb(self.energy.emitted),
-            rgb(self.energy.absorbed),
-            rgb(self.energy.escaped),
-            self.energy.travelling.map(|power| format!("{power:.1e}")).join(" ")
-        ));
-        lines.push(format!(
-            "column sums: {:.3} to {:.3}; collocation is exact by rows, so in a closed scene what is away from 1 shows as \
-             escaped",
-            self.column_sums[0], self.column_sums[1]
-        ));
-        if let Some(verify) = &self.verify {
-            lines.push(format!(
-                "classic matrix: largest relative difference {:.1e}, {:.1e} in the mean, {:.1e} W/m² at most; {:.2} s + {:.2} s, {} kept{}",
-                verify.max_rel_diff,
-                verify.rms_rel_diff,
-                verify.max_abs_diff,
-                verify.form_factor_seconds,
-                verify.solve_seconds,
-                bytes(verify.matrix_bytes),
-                verify.peak_rss.map_or(String::new(), |peak| format!(", peak {}", bytes(peak)))
-            ));
-        }
-        lines.extend(self.notes.iter().map(|note| format!("note: {note}")));
-        lines.extend(self.outputs.iter().map(|output| format!("wrote {output}")));
+        lines.extend(self.notes_lines());
+        lines.extend(self.written_lines());
         lines.join("\n") + "\n"
     }
 
-    fn blocks_line(&self) -> String {
+    fn computed_line(&self) -> String {
+        if self.form_factors_computed == 0 {
+            return "form factors: all from the cache".into();
+        }
         let blocks = &self.blocks;
+        let reused = blocks.self_reused + blocks.coupling_reused;
         format!(
-            "own blocks: {} baked, {} reused, {} corrected for what stands inside; coupling: {} computed, {} reused; \
-             {} form factors computed",
-            blocks.self_baked,
-            blocks.self_reused,
-            blocks.self_corrected,
-            blocks.coupling_computed,
-            blocks.coupling_reused,
-            self.form_factors_computed
+            "form factors: {} computed, {} of {} blocks from the cache",
+            thousands(self.form_factors_computed),
+            reused,
+            reused + blocks.self_baked + blocks.self_corrected + blocks.coupling_computed
         )
     }
 
-    fn step_lines(&self) -> Vec<String> {
-        let s = &self.seconds;
-        vec![
-            format!(
-                "{:<8}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}",
-                "step", 1, 2, 3, 4, 5, 6, 7, 8, "T1", "T2", "T3"
-            ),
-            format!(
-                "{:<8}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}{:>9.3}",
-                "seconds",
-                s.step1,
-                s.step2,
-                s.step3,
-                s.step4,
-                s.step5,
-                s.step6,
-                s.step7,
-                s.step8,
-                s.t1,
-                s.t2,
-                s.t3
-            ),
-            format!("measured: {:.3} s in all with {} threads", s.total, rayon::current_num_threads()),
-        ]
+    fn error_line(&self) -> String {
+        let line = format!("error: {}", self.error.text());
+        if self.converged { line } else { format!("{line}; {NOT_CONVERGED}") }
     }
 
-    /// The first rounds and the last; a thousand lines help nobody.
-    fn round_lines(&self) -> Vec<String> {
-        let off = |round: &RoundReport| round.true_error.map_or(String::new(), |off| format!("{off:>14.3e}"));
-        let shows_off = self.rounds.iter().any(|round| round.true_error.is_some());
-        let mut lines = vec![format!(
-            "{:<8}{:>12}{:>14}{:>14}{:>10}{}",
-            "round",
-            "residual",
-            "bound W/m²",
-            "relative",
-            "seconds",
-            if shows_off { format!("{:>14}", "true W/m²") } else { String::new() }
-        )];
-        let count = self.rounds.len();
-        for round in &self.rounds {
-            if round.round <= 12 || round.round + 3 > count {
-                lines.push(format!(
-                    "{:<8}{:>12.3e}{:>14.3e}{:>14.3e}{:>10.3}{}",
-                    round.round,
-                    round.residual,
-                    round.error_bound,
-                    round.relative_bound,
-                    round.seconds,
-                    off(round)
-                ));
-            } else if round.round == 13 {
-                lines.push("…".into());
-            }
-        }
-        if !self.converged {
-            lines.push(
-                "the exchange did not come as near as asked: stopped before, or rounding is reached".into(),
-            );
-        }
-        if let Some(last) = self.rounds.last() {
-            lines.push(format!(
-                "exchange: proved to be within {:.1e} W/m² of the solution with the form factors as they are kept",
-                last.error_bound
-            ));
+    fn notes_lines(&self) -> Vec<String> {
+        let mut lines: Vec<String> =
+            self.notes.iter().take(MOST_NOTES).map(|note| format!("note: {note}")).collect();
+        if let more @ 1.. = self.notes.len().saturating_sub(MOST_NOTES) {
+            lines.push(format!("{} more: --verbose or --json", counted(more, "note")));
         }
         lines
+    }
+
+    /// A line for each folder with the files in it.
+    fn written_lines(&self) -> Vec<String> {
+        let mut folders: Vec<(&Path, Vec<&str>)> = Vec::new();
+        for output in &self.outputs {
+            let path = Path::new(output);
+            let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+            let name = path.file_name().and_then(|name| name.to_str()).unwrap_or(output);
+            match folders.iter_mut().find(|(known, _)| *known == folder) {
+                Some((_, names)) => names.push(name),
+                None => folders.push((folder, vec![name])),
+            }
+        }
+        let line =
+            |(folder, names): (&Path, Vec<&str>)| format!("wrote {}: {}", folder.display(), names.join(", "));
+        folders.into_iter().map(line).collect()
     }
 }
 
 impl ErrorReport {
-    /// What is proved and what was measured of entries that stand for clusters.
-    fn lines(&self, elements: usize) -> Vec<String> {
-        let mut lines = Vec::new();
-        match self.spread {
-            Some(_) if self.proved.is_finite() => lines.push(format!(
-                "clusters: at worst a radiosity is off by {:.2e} W/m², {} of the mean in RMS (a proved bound that adds up what \
-                 mostly cancels, from {})",
-                self.proved,
-                percent(self.proved_rms),
-                self.proved_from
-            )),
-            Some(_) => lines.push(
-                "clusters: no bound on their error can be proved, as some surfaces reflect all light".to_owned(),
-            ),
-            None => {}
-        }
-        if let Some(rows) = &self.exact_rows {
-            let whether = if rows.rows == elements { "all" } else { "a sample, which proves nothing" };
-            lines.push(format!(
-                "clusters: measured in {} exact rows ({whether}), residual {} of the mean in RMS, {} at most: \
-                 radiosity is off by about {}",
-                rows.rows,
-                percent(rows.residual_rms_rel),
-                percent(rows.residual_max_rel),
+    /// What is measured and what is proved, in a clause each.
+    fn text(&self) -> String {
+        let proved = if self.proved.is_finite() {
+            format!("proved below {} W/m² everywhere", rounded(self.proved))
+        } else {
+            "without a proof, as some surfaces reflect all light".into()
+        };
+        match &self.exact_rows {
+            Some(rows) => format!(
+                "about {} of the mean (from {} exact rows), {proved}",
                 percent(rows.estimated_rms_rel),
-            ));
+                rows.rows
+            ),
+            None => proved,
         }
-        lines
     }
 }
 
-fn percent(share: f64) -> String {
+impl Verify {
+    /// The comparison with the classic matrix.
+    pub fn line(&self) -> String {
+        format!(
+            "classic matrix: largest relative difference {:.1e}, {:.1e} in the mean, {:.1e} W/m² at most; {:.2} s + {:.2} s, {} kept{}",
+            self.max_rel_diff,
+            self.rms_rel_diff,
+            self.max_abs_diff,
+            self.form_factor_seconds,
+            self.solve_seconds,
+            bytes(self.matrix_bytes),
+            self.peak_rss.map_or(String::new(), |peak| format!(", peak {}", bytes(peak)))
+        )
+    }
+}
+
+/// A number of things.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A number with its digits in groups of three.
+fn thousands(number: usize) -> String {
+    let digits = number.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().map(|group| std::str::from_utf8(group).expect("digits")).collect();
+    groups.join(" ")
+}
+
+/// Two digits of a number, written without an exponent where that is short.
+fn rounded(number: f64) -> String {
+    if number == 0.0 || (1e-3..1e4).contains(&number) {
+        let decimals = (1 - number.max(1e-3).log10().floor() as i32).clamp(0, 4) as usize;
+        format!("{number:.decimals$}")
+    } else {
+        format!("{number:.1e}")
+    }
+}
+
+/// A share in percent.
+pub fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
@@ -209,6 +167,22 @@ pub fn bytes(count: usize) -> String {
     unreachable!("the last unit returns")
 }
 
-fn rgb(v: [f64; 3]) -> String {
+/// Three channels.
+pub fn rgb(v: [f64; 3]) -> String {
     format!("{:.4} {:.4} {:.4}", v[0], v[1], v[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (number, expected) in
+            [(0.0, "0.0000"), (0.01234, "0.012"), (2.25, "2.2"), (1234.0, "1234"), (3e-9, "3.0e-9")]
+        {
+            assert_eq!(rounded(number), expected);
+        }
+        assert_eq!([12, 1234, 1234567].map(thousands), ["12", "1 234", "1 234 567"]);
+    }
 }

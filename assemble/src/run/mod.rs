@@ -1,6 +1,7 @@
 //! The whole run: a scene is solved, its light is proved and written, and the run is reported.
 
 pub mod advice;
+mod expected_work;
 pub mod job;
 pub mod plan;
 #[cfg(feature = "cli")]
@@ -25,6 +26,7 @@ use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Prepared, lost_digits_note, prepare};
 use equilux_formats::{Result, Scene, Store, Swept};
+use expected_work::expected_work;
 use job::Job;
 use std::path::Path;
 use std::time::Instant;
@@ -43,6 +45,10 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let (places, against) = job.tables(scene.origin)?;
     let store = Store::open(&settings.cache)?;
     let element_size = prepared.element_size.to_string();
+    let has_clusters = settings.preparation.resolution.opening > 0.0;
+    let places = places.as_deref();
+    let elements = prepared.elements();
+    monitor.expect(expected_work(requests, elements, has_clusters, atlas.as_ref(), places));
     let solved = solve_prepared(&scene, prepared, settings, &store, monitor, observer)?;
     let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let (equation, outcome) = (&solved.equation, &solved.outcome);
@@ -56,7 +62,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         solved: &solved,
         classic: classic.as_ref(),
         atlas: atlas.as_ref(),
-        places: places.as_deref(),
+        places,
         against: against.as_ref(),
     };
     let Written { paths: outputs, notes, point_time, point_cpu } =

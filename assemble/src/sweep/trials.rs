@@ -136,7 +136,7 @@ impl<'a> Trials<'a> {
     fn announce(&self, setting: &Setting, seconds: f64) {
         let left = self.budget.saturating_sub(self.start.elapsed()).as_secs();
         let what = format!("run {} ({}), {left} s left", self.done.len() + 1, setting.label());
-        self.runner.monitor.begin(what, (seconds * 10.0).ceil() as usize);
+        self.runner.monitor.begin(what, (seconds * 10.0).ceil() as usize, seconds);
     }
 
     /// The number of elements of that size, metres, in the scene.
@@ -169,5 +169,5 @@ pub fn default_size(scene: &Scene) -> Result<f64> {
 /// The number of elements of that size, metres, in the scene.
 fn elements_of(scene: &Scene, size: f64) -> Result<usize> {
     let prepared = prepare(scene, &preparation(Some(ElementSize::Metres(size))))?;
-    Ok(prepared.instances.iter().map(|i| prepared.parts[i.part.index()].geometry.elements.len()).sum())
+    Ok(prepared.elements())
 }

@@ -1,7 +1,8 @@
-//! Progress for a person: a bar on stderr for anything over a second, nothing where stderr is no terminal. Ctrl-C
-//! asks for an end where results are whole; a second one ends at once.
+//! Progress for a person on stderr: one line for the whole run, drawn again and again on a terminal, printed every few
+//! seconds elsewhere. Ctrl-C requests an end where results are whole; a second one ends the program at once.
 
-use crate::monitor::Monitor;
+use super::program::tell;
+use crate::monitor::{Monitor, Progress};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::Arc;
@@ -23,72 +24,112 @@ pub fn monitor_for_program() -> Arc<Monitor> {
     monitor
 }
 
-/// The thread that draws; ends with [`Display::finish`].
+/// The thread that shows progress; ends with [`Display::finish`].
 pub struct Display {
     done: Arc<AtomicBool>,
-    thread: Option<JoinHandle<()>>,
+    thread: JoinHandle<()>,
 }
 
-/// How often the bar is drawn.
+/// The line on a terminal is drawn this often.
 const TICK: Duration = Duration::from_millis(100);
 
-/// What takes less time than this is not shown.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// A terminal shows nothing of what takes less time than this.
+const TERMINAL_FROM: Duration = Duration::from_secs(1);
+
+/// Without a terminal, nothing is printed of what takes less time than this.
+const LINES_FROM: Duration = Duration::from_secs(10);
+
+/// Without a terminal, a line is printed this often.
+const LINES_EVERY: Duration = Duration::from_secs(5);
 
 /// Show the monitor's progress until the display is finished.
 pub fn show(monitor: &Arc<Monitor>) -> Display {
     let done = Arc::new(AtomicBool::new(false));
-    if !std::io::stderr().is_terminal() {
-        return Display { done, thread: None };
-    }
     let (monitor, ended) = (Arc::clone(monitor), Arc::clone(&done));
-    Display { done, thread: Some(std::thread::spawn(move || draw(&monitor, &ended))) }
+    let show = if std::io::stderr().is_terminal() { draw } else { print_lines };
+    Display { done, thread: std::thread::spawn(move || show(&monitor, &ended)) }
 }
 
 impl Display {
-    /// Take the bar away.
+    /// Take the line away.
     pub fn finish(self) {
         self.done.store(true, Ordering::Relaxed);
-        if let Some(thread) = self.thread {
-            // A panic there only concerns the drawing.
-            let _ = thread.join();
-        }
+        self.thread.thread().unpark();
+        // A panic there only concerns the drawing.
+        let _ = self.thread.join();
     }
 }
 
-fn draw(monitor: &Monitor, done: &AtomicBool) {
+fn draw(monitor: &Monitor, ended: &AtomicBool) {
     let start = Instant::now();
-    let mut bar: Option<(String, ProgressBar)> = None;
-    while !done.load(Ordering::Relaxed) {
-        std::thread::sleep(TICK);
-        let (stage, steps) = monitor.now();
-        if start.elapsed() < PATIENCE || stage.what.is_empty() {
+    let mut bar: Option<ProgressBar> = None;
+    while !ended.load(Ordering::Relaxed) {
+        std::thread::park_timeout(TICK);
+        let progress = monitor.now();
+        if start.elapsed() < TERMINAL_FROM || progress.step.what.is_empty() {
             continue;
         }
-        if bar.as_ref().is_none_or(|(what, _)| *what != stage.what) {
-            if let Some((_, old)) = bar.take() {
-                old.finish_and_clear();
-            }
-            bar = Some((stage.what.clone(), new_bar(stage.what, stage.total)));
-        }
-        if let Some((_, bar)) = &bar {
-            bar.set_position(steps);
-        }
+        let bar = bar.get_or_insert_with(new_bar);
+        bar.set_position((progress.share * STEPS_OF_BAR) as u64);
+        bar.set_message(line(&progress));
     }
-    if let Some((_, bar)) = bar {
+    if let Some(bar) = bar {
         bar.finish_and_clear();
     }
 }
 
-fn new_bar(what: String, total: u64) -> ProgressBar {
-    let (bar, template) = if total == 0 {
-        (ProgressBar::new_spinner(), "{spinner} {msg}: {pos} rounds, {elapsed}")
-    } else {
-        (ProgressBar::new(total), "{msg} [{bar:30}] {percent:>3} %, {eta} left")
-    };
-    bar.set_style(
-        ProgressStyle::with_template(template).expect("the template is well formed").progress_chars("=> "),
-    );
-    bar.set_message(what);
-    bar
+/// The bar is drawn this finely.
+const STEPS_OF_BAR: f64 = 1000.0;
+
+fn new_bar() -> ProgressBar {
+    let style = ProgressStyle::with_template("[{bar:24}] {wide_msg}").expect("the template is well formed");
+    ProgressBar::new(STEPS_OF_BAR as u64).with_style(style.progress_chars("=> "))
+}
+
+fn print_lines(monitor: &Monitor, ended: &AtomicBool) {
+    let start = Instant::now();
+    let mut next = LINES_FROM;
+    while !ended.load(Ordering::Relaxed) {
+        std::thread::park_timeout(next.saturating_sub(start.elapsed()));
+        let progress = monitor.now();
+        if start.elapsed() >= next && !progress.step.what.is_empty() && !ended.load(Ordering::Relaxed) {
+            tell(line(&progress));
+        }
+        if start.elapsed() >= next {
+            next = start.elapsed() + LINES_EVERY;
+        }
+    }
+}
+
+/// The share that is done, the time left for all of it, and the current step.
+fn line(progress: &Progress) -> String {
+    let Progress { step, done, share, left } = progress;
+    let left = left.map_or(String::new(), |left| format!(", about {} left", rounded(left)));
+    let count = if step.total == 0 && *done > 0 { format!(", round {done}") } else { String::new() };
+    format!("{:3.0} %{left}: {}{count}", (100.0 * share).floor(), step.what)
+}
+
+/// A time of which a person needs one or two digits.
+fn rounded(time: Duration) -> String {
+    match time.as_secs() {
+        0..60 => format!("{} s", time.as_secs() + 1),
+        60..3600 => format!("{} min", time.as_secs().div_ceil(60)),
+        seconds => format!("{:.1} h", seconds as f64 / 3600.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::monitor::Step;
+
+    #[test]
+    fn a_line_has_the_share_the_time_left_and_the_step() {
+        let step = Step { what: "coupling of crate".into(), total: 9 };
+        let progress = Progress { step, done: 3, share: 0.349, left: Some(Duration::from_secs(100)) };
+        assert_eq!(line(&progress), " 34 %, about 2 min left: coupling of crate");
+        let step = Step { what: "exchange".into(), total: 0 };
+        let progress = Progress { step, done: 3, share: 0.9, left: None };
+        assert_eq!(line(&progress), " 90 %: exchange, round 3");
+    }
 }

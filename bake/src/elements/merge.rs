@@ -3,7 +3,9 @@
 //! In each plane polygons first grow into strips along one direction, then in any. A regular grid so becomes one
 //! rectangle, a wall with a door three or four.
 
+use crate::geometry::disjoint_sets::DisjointSets;
 use crate::geometry::planes;
+use crate::geometry::point_key::point_key;
 use crate::geometry::tolerance::{FLATNESS, LONGER};
 use equilux_formats::Face;
 use glam::DVec3;
@@ -59,8 +61,8 @@ struct Merger<K> {
     normals: Vec<DVec3>,
     /// The polygon on the left of each directed edge.
     left_of: HashMap<(Class<K>, u32, u32), u32>,
-    /// What each polygon went into; itself while it stands.
-    into: Vec<u32>,
+    /// The polygons that became one.
+    joined: DisjointSets,
     tolerance: f64,
 }
 
@@ -69,7 +71,7 @@ impl<K: Copy + Eq + Hash> Merger<K> {
         let mut numbers = HashMap::new();
         let mut positions = Vec::new();
         let mut number = |p: DVec3| {
-            *numbers.entry((p + 0.0).to_array().map(f64::to_bits)).or_insert_with(|| {
+            *numbers.entry(point_key(p)).or_insert_with(|| {
                 positions.push(p);
                 positions.len() as u32 - 1
             })
@@ -81,7 +83,7 @@ impl<K: Copy + Eq + Hash> Merger<K> {
             classes: (0..loops.len()).map(class).collect(),
             normals: polygons.iter().map(|face| face.normal).collect(),
             left_of: HashMap::new(),
-            into: (0..loops.len() as u32).collect(),
+            joined: DisjointSets::new(loops.len()),
             tolerance: FLATNESS * largest,
             positions,
             loops,
@@ -162,7 +164,7 @@ impl<K: Copy + Eq + Hash> Merger<K> {
         self.leave(polygon);
         self.leave(neighbour);
         self.loops[neighbour].clear();
-        self.into[neighbour] = polygon as u32;
+        self.joined.join(polygon, neighbour);
         self.loops[polygon] = union;
         self.enter(polygon);
     }
@@ -181,23 +183,16 @@ impl<K: Copy + Eq + Hash> Merger<K> {
         }
     }
 
-    fn finish(self) -> Merged {
+    fn finish(mut self) -> Merged {
         let mut numbers = vec![0; self.loops.len()];
         let mut faces = Vec::new();
         for (polygon, corners) in self.loops.iter().enumerate().filter(|(_, corners)| !corners.is_empty()) {
-            numbers[polygon] = faces.len() as u32;
+            numbers[self.joined.root(polygon)] = faces.len() as u32;
             faces.push(Face::new(corners.iter().map(|&v| self.positions[v as usize]).collect()));
         }
-        let of = (0..self.into.len()).map(|polygon| numbers[root(&self.into, polygon)]).collect();
+        let of = (0..self.loops.len()).map(|polygon| numbers[self.joined.root(polygon)]).collect();
         Merged { faces, of }
     }
-}
-
-fn root(into: &[u32], mut polygon: usize) -> usize {
-    while into[polygon] as usize != polygon {
-        polygon = into[polygon] as usize;
-    }
-    polygon
 }
 
 fn edge(corners: &[u32], i: usize) -> (u32, u32) {

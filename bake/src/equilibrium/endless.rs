@@ -1,5 +1,6 @@
 //! Light that never ends: elements that see only each other, absorb nothing, and emit have no equilibrium.
 
+use crate::geometry::disjoint_sets::DisjointSets;
 use crate::treecode::MISSED;
 use equilux_formats::{ClusterTree, Optics, Rows};
 
@@ -14,19 +15,19 @@ pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>)
     if optics.reflectance.iter().all(|rho| rho.iter().all(|&r| r < 1.0 - NO_LOSS)) {
         return None;
     }
-    let mut group: Vec<usize> = (0..n).collect();
+    let mut groups = DisjointSets::new(n);
     let mut sums = vec![0.0; n];
     for (i, sum) in sums.iter_mut().enumerate() {
         for (j, value) in rows(i) {
             *sum += value;
-            unite(&mut group, i, j);
+            groups.join(i, j);
         }
     }
     for channel in 0..3 {
         let mut loses = vec![false; n];
         let mut emitter = vec![None; n];
         for (i, sum) in sums.iter().enumerate() {
-            let root = find(&mut group, i);
+            let root = groups.root(i);
             loses[root] |= 1.0 - optics.reflectance[i][channel] * sum > NO_LOSS;
             if optics.emission[i][channel] > 0.0 {
                 emitter[root] = emitter[root].or(Some(i));
@@ -50,17 +51,4 @@ pub fn endless_in_block(optics: &Optics, block: &Rows, clusters: &ClusterTree) -
         }
         row
     })
-}
-
-fn find(group: &mut [usize], mut i: usize) -> usize {
-    while group[i] != i {
-        group[i] = group[group[i]];
-        i = group[i];
-    }
-    i
-}
-
-fn unite(group: &mut [usize], a: usize, b: usize) {
-    let (a, b) = (find(group, a), find(group, b));
-    group[a.max(b)] = a.min(b);
 }

@@ -5,6 +5,7 @@ pub mod box_tree;
 pub mod disjoint_sets;
 pub mod outline;
 pub mod planes;
+pub(crate) mod point_key;
 pub mod polygon;
 pub mod rounded_placement;
 pub mod shaft;

@@ -5,6 +5,7 @@
 //! solid angles of its polygons over 4π: 1 inside, 0 outside, whatever its shape (Jacobson, Kavan & Sorkine-Hornung 2013).
 
 use crate::geometry::disjoint_sets::DisjointSets;
+use crate::geometry::point_key::{EdgeKey, edge_keys};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::solid_angle::solid_angle;
 use crate::geometry::tolerance::NO_VOLUME;
@@ -19,25 +20,6 @@ pub struct Shell {
     pub polygons: Vec<u32>,
     /// For each of them, whether it looks into the shell as it is wound.
     pub inward: Vec<bool>,
-}
-
-/// A point as a key: equal to the bit. Adding 0 makes −0 and 0 one key.
-pub(crate) type PointKey = [u64; 3];
-
-/// The key of `p`.
-pub(crate) fn point_key(p: DVec3) -> PointKey {
-    (p + 0.0).to_array().map(f64::to_bits)
-}
-
-/// The key of an edge, whichever way it runs, and whether it runs from the smaller key to the larger.
-type EdgeKey = [PointKey; 2];
-
-fn edge_keys(corners: &[DVec3]) -> impl Iterator<Item = (EdgeKey, bool)> + '_ {
-    let key = |i: usize| point_key(corners[i % corners.len()]);
-    (0..corners.len()).map(move |i| {
-        let (a, b) = (key(i), key(i + 1));
-        if a < b { ([a, b], true) } else { ([b, a], false) }
-    })
 }
 
 /// The shells that close by whole edges. `either_way(i)` tells whether the winding of polygon `i` may be turned round: one of

@@ -5,8 +5,9 @@
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::disjoint_sets::DisjointSets;
+use crate::geometry::point_key::point_key;
 use crate::geometry::shells::{
-    closed_shells, groups_by_edges, is_balanced, point_key, triangles, volume_and_area, winding_number,
+    closed_shells, groups_by_edges, is_balanced, triangles, volume_and_area, winding_number,
 };
 use crate::geometry::tolerance::{CLOSED, WOUND};
 use equilux_formats::{Element, Face, Geometry};

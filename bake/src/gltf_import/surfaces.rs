@@ -3,6 +3,7 @@
 //! in the same order.
 
 use super::triangles::Triangles;
+use crate::geometry::point_key::{PointKey, point_key};
 use crate::geometry::tolerance::{BENT_QUAD, ROUNDED_CORNERS};
 use equilux_formats::{Corners, MaterialId, Surface, TexturedTriangle};
 use glam::{DVec2, DVec3};
@@ -82,13 +83,12 @@ fn largest_coordinate(points: &[DVec3]) -> f64 {
 
 /// Gives equal points equal numbers.
 #[derive(Default)]
-struct Welder(HashMap<[u64; 3], usize>);
+struct Welder(HashMap<PointKey, usize>);
 
 impl Welder {
     fn number(&mut self, point: DVec3) -> usize {
         let next = self.0.len();
-        // Adding 0 makes −0 and 0 one number.
-        *self.0.entry(point.to_array().map(|x| (x + 0.0).to_bits())).or_insert(next)
+        *self.0.entry(point_key(point)).or_insert(next)
     }
 }
 

@@ -4,9 +4,9 @@ use super::mesh::{Edge, Mesh, steps};
 use super::touching_itself::touches_itself;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::box_tree::{BoxTree, Inside};
+use crate::geometry::point_key::point_key;
 use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::Face;
-use glam::DVec3;
 use std::collections::HashMap;
 
 impl Mesh {
@@ -30,7 +30,7 @@ impl Mesh {
         let (mut loops, mut first) = (vec![], vec![0]);
         for &face in &order {
             for &corner in &faces[face as usize].corners {
-                loops.push(*numbers.entry(bits(corner)).or_insert_with(|| {
+                loops.push(*numbers.entry(point_key(corner)).or_insert_with(|| {
                     corners.push(corner);
                     corners.len() as u32 - 1
                 }));
@@ -95,11 +95,6 @@ impl Mesh {
         };
         (0..self.faces.len()).map(cone).sum()
     }
-}
-
-/// A point as a key: equal to the bit.
-fn bits(p: DVec3) -> [u64; 3] {
-    (p + 0.0).to_array().map(f64::to_bits)
 }
 
 /// The things of a hierarchy such that neighbours are near each other.

@@ -5,7 +5,7 @@ use crate::monitor::Monitor;
 use crate::oven::prepare::PreparedPart;
 use crate::oven::prepare::{Preparation, prepare};
 use crate::oven::{Baked, Oven};
-use equilux_formats::{Error, Result, Rows, Store, Swept};
+use equilux_formats::{Error, Result, RowSumDefect, Store, Swept};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -60,15 +60,6 @@ pub struct PartOutcome {
     pub row_sum_defect: RowSumDefect,
     /// Wall time.
     pub seconds: f64,
-}
-
-/// Distance of row sums from one.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct RowSumDefect {
-    /// The worst row.
-    pub max: f64,
-    /// The mean over all rows.
-    pub mean: f64,
 }
 
 impl Batch {
@@ -154,7 +145,9 @@ fn bake_file(
     outcome.notes.clone_from(&scene.notes);
     outcome.sources.clone_from(&scene.sources);
     let oven = Oven { store, file, resolution: wanted.resolution, monitor };
-    for part in &prepare(&scene, wanted)?.parts {
+    let parts = prepare(&scene, wanted)?.parts;
+    monitor.expect(parts.iter().map(|part| part.geometry.elements.len() as f64).sum());
+    for part in &parts {
         let start = Instant::now();
         let baked = oven.bake(part);
         outcome.notes.extend(damage_notes(store));
@@ -182,13 +175,7 @@ fn part_outcome(part: &PreparedPart, baked: &Baked, seconds: f64) -> PartOutcome
         form_factors_reason: baked.form_factors.to_string(),
         light_reason: baked.light.to_string(),
         stored: baked.part.self_block.stored(),
-        row_sum_defect: row_sum_defect(&baked.part.self_block),
+        row_sum_defect: baked.part.self_block.row_sum_defect(),
         seconds,
     }
-}
-
-fn row_sum_defect(block: &Rows) -> RowSumDefect {
-    let defects: Vec<f64> = (0..block.receivers()).map(|i| (block.row_sum(i) - 1.0).abs()).collect();
-    let max = defects.iter().copied().fold(0.0, f64::max);
-    RowSumDefect { max, mean: defects.iter().sum::<f64>() / defects.len().max(1) as f64 }
 }

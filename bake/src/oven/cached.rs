@@ -118,7 +118,7 @@ fn wait_for_turn(store: &Store, name: &str, manifest: &Manifest, monitor: &Monit
         if let Some(turn) = store.try_turn(&key) {
             return Some(turn);
         }
-        monitor.begin(format!("another process computes {name}: waiting for it"), 1);
+        monitor.begin(format!("another process computes {name}: waiting for it"), 0, 0.0);
         std::thread::sleep(PATIENCE);
     }
     None

@@ -72,9 +72,9 @@ impl Oven<'_> {
     pub fn bake(&self, part: &PreparedPart) -> Result<Option<Baked>> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
-        let mut form_factor_time = Duration::ZERO;
+        let (mut form_factor_time, receivers) = (Duration::ZERO, part.geometry.elements.len());
         let found = cached(self.store, &self.name(part, "form factors"), &manifest, self.monitor, || {
-            self.monitor.begin(format!("form factors of {}", part.name), part.geometry.elements.len());
+            self.monitor.begin(format!("form factors of {}", part.name), receivers, receivers as f64);
             let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
             let request = Request {
                 world: &world,
@@ -91,6 +91,9 @@ impl Oven<'_> {
             }))
         })?;
         let Some((geometry, form_factors)) = found else { return Ok(None) };
+        if form_factors.is_reused() {
+            self.monitor.spare(receivers as f64);
+        }
         let start = Instant::now();
         let unlit = Unlit {
             name: &part.name,
@@ -147,7 +150,7 @@ impl Oven<'_> {
         let manifest = light_manifest(part.key.into(), optics, part.solver);
         let name = self.named(part.name, part.what);
         let (light, origin) = cached(self.store, &name, &manifest, self.monitor, || {
-            self.monitor.begin(format!("local equilibrium of {}", part.name), 1);
+            self.monitor.begin(format!("local equilibrium of {}", part.name), 0, 0.0);
             if let Some(element) = endless_in_block(optics, part.self_block, &part.geometry.clusters) {
                 return Err(self.endless_light(part.name, &material(element)));
             }

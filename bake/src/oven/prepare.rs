@@ -49,6 +49,13 @@ pub struct Prepared {
     pub element_size: ElementSize,
 }
 
+impl Prepared {
+    /// Number of elements of the scene.
+    pub fn elements(&self) -> usize {
+        self.instances.iter().map(|instance| self.parts[instance.part.index()].geometry.elements.len()).sum()
+    }
+}
+
 /// A part that is ready to bake.
 pub struct PreparedPart {
     /// Its name.

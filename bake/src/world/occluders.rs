@@ -7,6 +7,8 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::box_tree::{BoxTree, Inside};
 use crate::geometry::outline::{Edge, Outline, Plane};
+use crate::geometry::point_key::{EdgeKey, edge_keys, point_key};
+use crate::geometry::shells::groups_by_edges;
 use crate::geometry::tolerance::FLATNESS;
 use crate::meshes::Mesh;
 use equilux_formats::Face;
@@ -74,7 +76,9 @@ impl Occluders {
             occluder.faces.iter().for_each(|&face| of_face[face as usize] = all.len() as u32);
             all.push(occluder);
         };
-        for group in connected(faces) {
+        let polygons: Vec<&[DVec3]> = faces.iter().map(|face| face.corners.as_slice()).collect();
+        for group in groups_by_edges(&polygons) {
+            let group: Vec<u32> = group.into_iter().map(|face| face as u32).collect();
             let hollow = group.iter().any(|&face| lit_behind[face as usize]);
             if let Some(solid) = convex_solid(&group, faces).filter(|_| !hollow) {
                 add(solid);
@@ -151,49 +155,9 @@ fn tree(occluders: &[Occluder]) -> BoxTree {
     BoxTree::new(&occluders.iter().map(|o| o.bounds).collect::<Vec<_>>())
 }
 
-/// A point as a key: equal to the bit.
-type Bits = [u64; 3];
-
-fn bits(p: DVec3) -> Bits {
-    (p + 0.0).to_array().map(f64::to_bits)
-}
-
-/// An edge as a key, whichever way it runs.
-fn undirected(a: DVec3, b: DVec3) -> (Bits, Bits) {
-    if bits(a) < bits(b) { (bits(a), bits(b)) } else { (bits(b), bits(a)) }
-}
-
 fn edges(face: &Face) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
     let n = face.corners.len();
     (0..n).map(move |i| (face.corners[i], face.corners[(i + 1) % n]))
-}
-
-/// Faces that hang together by whole edges, in order of their first face.
-fn connected(faces: &[Face]) -> Vec<Vec<u32>> {
-    let mut first_at: HashMap<(Bits, Bits), usize> = HashMap::new();
-    let mut group: Vec<usize> = (0..faces.len()).collect();
-    for (number, face) in faces.iter().enumerate() {
-        for (a, b) in edges(face) {
-            let other = *first_at.entry(undirected(a, b)).or_insert(number);
-            let (x, y) = (find(&mut group, number), find(&mut group, other));
-            group[x.max(y)] = x.min(y);
-        }
-    }
-    let mut members: Vec<Vec<u32>> = vec![vec![]; faces.len()];
-    for number in 0..faces.len() {
-        let root = find(&mut group, number);
-        members[root].push(number as u32);
-    }
-    members.retain(|group| !group.is_empty());
-    members
-}
-
-fn find(group: &mut [usize], mut i: usize) -> usize {
-    while group[i] != i {
-        group[i] = group[group[i]];
-        i = group[i];
-    }
-    i
 }
 
 /// Whether these connected faces are a tessellated curved surface: see [`BEND`]. Edges that do not bend tell nothing.
@@ -201,11 +165,11 @@ fn is_curved(group: &[u32], faces: &[Face]) -> bool {
     if group.len() < MESH {
         return false;
     }
-    let mut first_at: HashMap<(Bits, Bits), &Face> = HashMap::new();
+    let mut first_at: HashMap<EdgeKey, &Face> = HashMap::new();
     let (mut bent, mut little) = (0, 0);
     for face in group.iter().map(|&face| &faces[face as usize]) {
-        for (a, b) in edges(face) {
-            let Some(other) = first_at.insert(undirected(a, b), face) else { continue };
+        for (edge, _) in edge_keys(&face.corners) {
+            let Some(other) = first_at.insert(edge, face) else { continue };
             let cosine = face.normal.dot(other.normal).abs();
             let flat = face.normal.cross(other.normal).length() <= FLATNESS;
             bent += usize::from(!flat);
@@ -220,10 +184,10 @@ fn convex_solid(group: &[u32], faces: &[Face]) -> Option<Occluder> {
     if group.len() < 4 {
         return None;
     }
-    let mut right_of: HashMap<(Bits, Bits), u32> = HashMap::new();
+    let mut right_of: HashMap<EdgeKey, u32> = HashMap::new();
     for (position, &face) in group.iter().enumerate() {
         for (a, b) in edges(&faces[face as usize]) {
-            if right_of.insert((bits(b), bits(a)), position as u32).is_some() {
+            if right_of.insert([point_key(b), point_key(a)], position as u32).is_some() {
                 return None;
             }
         }
@@ -231,7 +195,7 @@ fn convex_solid(group: &[u32], faces: &[Face]) -> Option<Occluder> {
     let mut solid_edges = Vec::new();
     for (position, &face) in group.iter().enumerate() {
         for (a, b) in edges(&faces[face as usize]) {
-            let right = *right_of.get(&(bits(a), bits(b)))?;
+            let right = *right_of.get(&[point_key(a), point_key(b)])?;
             if position < right as usize {
                 solid_edges.push(Edge { ends: [a, b], left: position as u32, right });
             }
@@ -239,7 +203,7 @@ fn convex_solid(group: &[u32], faces: &[Face]) -> Option<Occluder> {
     }
     let mut corners: Vec<DVec3> =
         group.iter().flat_map(|&f| faces[f as usize].corners.iter().copied()).collect();
-    corners.sort_by_key(|&p| bits(p));
+    corners.sort_by_key(|&p| point_key(p));
     corners.dedup();
     let size = corners.iter().map(|&p| (p - corners[0]).length()).fold(0.0, f64::max);
     let behind =

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::fingerprint::Manifest;
 use crate::geometry::Optics;
 use crate::part::LocalSolver;
-use crate::rows::Rgb;
+use crate::rgb::Rgb;
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]

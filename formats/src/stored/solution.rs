@@ -4,7 +4,7 @@ use super::{Stored, check, finite_rows};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
-use crate::rows::Rgb;
+use crate::rgb::Rgb;
 use crate::solution::{Solution, SolvedInstance};
 
 impl Stored for Solution {

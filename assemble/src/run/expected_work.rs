@@ -1,0 +1,29 @@
+//! The work of a run beside form factors and exchange, in rows of form factors, for its progress. Rough factors suffice: they
+//! decide how well the time left is foretold, and nothing else.
+
+use crate::gather::points::{Place, ROWS_PER_POINT};
+use crate::lightmap::ROWS_PER_TEXEL;
+use crate::lightmap::atlas::Atlas;
+use crate::outputs::requests::OutputRequests;
+use crate::proof::exact_rows::ROWS_PER_EXACT_ROW;
+use crate::proof::sample::ExactRows;
+
+/// The work of what is requested of a scene with so many elements.
+pub fn expected_work(
+    requests: &OutputRequests,
+    elements: usize,
+    has_clusters: bool,
+    atlas: Option<&Atlas>,
+    places: Option<&[Place]>,
+) -> f64 {
+    let exact_rows = match requests.exact_rows {
+        _ if !has_clusters => 0,
+        ExactRows::About(rows) => rows.min(elements),
+        ExactRows::All => elements,
+    };
+    let classic = if requests.verify { elements } else { 0 };
+    let texels: usize = atlas.map_or(0, |atlas| atlas.tiles().iter().map(|tile| tile.texels()).sum());
+    ROWS_PER_EXACT_ROW * (exact_rows + classic) as f64
+        + ROWS_PER_TEXEL * texels as f64
+        + ROWS_PER_POINT * places.map_or(0, <[Place]>::len) as f64
+}
