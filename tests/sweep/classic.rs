@@ -1,4 +1,4 @@
-//! The classic ways solve the same scene.
+//! The classic methods find the same light as parts.
 
 use super::workshop;
 use equilux_tests::workshop::Workshop;

@@ -1,14 +1,14 @@
-//! What a sweep writes, and that it does not run again what was run.
+//! The files that a sweep writes; complete runs are not repeated.
 
-use super::{FOLDER, kept, swept, told, workshop};
+use super::{FOLDER, kept, reported, swept, workshop};
 
 #[test]
 fn a_sweep_writes_what_machines_and_people_read_and_runs_nothing_twice() {
     let workshop = workshop();
     let first = swept(&workshop, "3");
     assert_eq!(first["reused"], 0);
-    assert!(told(&first) >= 4, "only {} runs in 3 s", told(&first));
-    assert_eq!(kept(&workshop), told(&first), "a file a run");
+    assert!(reported(&first) >= 4, "only {} runs in 3 s", reported(&first));
+    assert_eq!(kept(&workshop), reported(&first), "a file a run");
 
     let text = |name: &str| std::fs::read_to_string(workshop.path(FOLDER).join(name)).expect(name);
     let written: serde_json::Value = serde_json::from_str(&text("sweep.json")).expect("JSON");
@@ -22,7 +22,7 @@ fn a_sweep_writes_what_machines_and_people_read_and_runs_nothing_twice() {
     for run in runs {
         let [flat, gathered] =
             ["elements", "gathered"].map(|of| run["errors"][of].as_f64().expect("an error"));
-        // A room lit by a lamp on its ceiling: whoever errs by more than the mean has not the light of this scene.
+        // A room with a lamp on its ceiling: light with an error above the mean is not that of this scene.
         assert!(flat < 1.0 && gathered < 1.0, "{}: {flat} and {gathered}", run["label"]);
         assert!(run["seconds_solve"].as_f64() > Some(0.0), "{run}");
     }
@@ -34,9 +34,9 @@ fn a_sweep_writes_what_machines_and_people_read_and_runs_nothing_twice() {
     }
     assert!(page.contains("<svg") && page.contains("assemble scene.glb"), "no chart or command in the page");
 
-    // Too little time for anything new.
+    // Too little time for a new run.
     let again = swept(&workshop, "0.001");
-    assert_eq!(again["reused"], told(&first), "runs that were there");
+    assert_eq!(again["reused"], reported(&first), "runs that were there");
     let commands = |summary: &serde_json::Value| -> Vec<serde_json::Value> {
         summary["runs"].as_array().expect("a list").iter().map(|run| run["command"].clone()).collect()
     };

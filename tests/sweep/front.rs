@@ -1,4 +1,4 @@
-//! A front is what its name says.
+//! No choice beats one on the front, and every other choice is beaten or equalled by one on it.
 
 use equilux_assemble::sweep::front::front;
 use proptest::prelude::*;

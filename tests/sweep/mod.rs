@@ -1,4 +1,4 @@
-//! `assemble sweep` reports error against run time, goes on where it was stopped, and compares with classic ways.
+//! `assemble sweep` reports error against run time, continues where it was stopped, and compares with classic methods.
 
 mod bad_truth;
 mod classic;
@@ -11,7 +11,7 @@ use equilux_tests::rooms::furnished;
 use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 
-/// Where a sweep of scene.glb leaves its files.
+/// The folder of a sweep of scene.glb.
 const FOLDER: &str = "out/scene/sweep";
 
 /// A small room with a table and a crate in it.
@@ -19,14 +19,14 @@ fn workshop() -> Workshop {
     Workshop::with(&furnished())
 }
 
-/// The summary of a sweep that ended well.
+/// The summary of a sweep that succeeds.
 fn swept(workshop: &Workshop, budget: &str) -> Value {
     let ended = workshop.run("assemble", &["sweep", "scene.glb", "--budget", budget, "--json"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     serde_json::from_str(&ended.stdout).unwrap_or_else(|_| panic!("not one object: {}", ended.stdout))
 }
 
-/// How many runs are kept.
+/// The number of runs that are kept.
 fn kept(workshop: &Workshop) -> usize {
     workshop
         .files(&format!("{FOLDER}/runs"))
@@ -35,7 +35,7 @@ fn kept(workshop: &Workshop) -> usize {
         .count()
 }
 
-/// The number of runs that a summary tells of.
-fn told(summary: &Value) -> usize {
+/// The number of runs in a summary.
+fn reported(summary: &Value) -> usize {
     ["runs", "exchanges"].iter().map(|list| summary[list].as_array().expect("a list").len()).sum()
 }

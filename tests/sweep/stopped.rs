@@ -1,4 +1,4 @@
-//! A sweep that is killed goes on, and one that is interrupted still reports.
+//! A sweep that was killed continues where it ended, and one that is interrupted still reports.
 
 use super::{FOLDER, kept, swept, workshop};
 use equilux_tests::program::program;
@@ -6,7 +6,7 @@ use equilux_tests::workshop::Workshop;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A sweep that has done at least two runs and is at more.
+/// A running sweep with at least two complete runs.
 fn started(workshop: &Workshop) -> Child {
     let running = Command::new(program("assemble"))
         .args(["sweep", "scene.glb", "--budget", "100"])
@@ -29,7 +29,7 @@ fn a_killed_sweep_goes_on_where_it_was() {
     let mut running = started(&workshop);
     running.kill().expect("a process to kill");
     running.wait().expect("it has ended");
-    // The run that was under way does not hear of it and ends by itself; its folder is taken away by the next sweep.
+    // The run in progress is not killed and ends by itself; the next sweep removes its folder.
     std::thread::sleep(Duration::from_secs(2));
     let before = kept(&workshop);
     let summary = swept(&workshop, "0.001");

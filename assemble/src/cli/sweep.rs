@@ -10,27 +10,27 @@ use equilux_formats::Result;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// A scene, and how long to try settings on it.
+/// A scene, and the time for trying settings on it.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// The scene, a .gltf or .glb file, or a folder with one
     #[arg(value_parser = values::scene)]
     scene: PathBuf,
-    /// The light it should have, a table as scenes/README.md describes it [default: the finest run within a third of the
+    /// Reference light, a table as scenes/README.md describes it [default: the finest run within a third of the
     /// budget]
     #[arg(long, value_name = "FILE.csv")]
     truth: Option<PathBuf>,
-    /// Seconds that may be spent; settings that would take longer are left out
+    /// Time for all runs, seconds; settings that would take longer are skipped
     #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = budget)]
     budget: Duration,
-    /// Folder for the outputs; they go to DIR/<scene>/sweep/: report.html, sweep.csv, sweep.json, and what each run told
+    /// Folder for the outputs; they go to DIR/<scene>/sweep/: report.html, sweep.csv, sweep.json, and the result of each run
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Print one JSON object on stdout and nothing else
     #[arg(long)]
     pub json: bool,
-    /// Options that every run gets, such as `-- --sky 0.5`
+    /// Options for every run, such as `-- --sky 0.5`
     #[arg(last = true, value_name = "OPTIONS")]
     more: Vec<String>,
 }
@@ -40,7 +40,7 @@ Examples:
   assemble sweep scenes/shadow/shadow.glb --truth scenes/shadow/truth.csv
   assemble sweep scenes/house/house.gltf --budget 120
   assemble sweep hall.glb -- --sky 0.5
-Ctrl-C ends the sweep; the report of what is there is still written. The same command again goes on.";
+Ctrl-C ends the sweep and writes the report of the complete runs. The same command continues it.";
 
 impl Arguments {
     /// Run the sweep.
@@ -55,10 +55,10 @@ impl Arguments {
         sweep(&options, monitor)
     }
 
-    /// What a person wants to know at once.
+    /// The results in a few lines.
     pub fn text(&self, summary: &Summary) -> String {
         let mut text = format!(
-            "{}: {} runs ({} from before) in {}, {} settings left out\n",
+            "{}: {} runs ({} kept from before) in {}, {} settings skipped\n",
             summary.scene,
             summary.runs.len() + summary.exchanges.len(),
             summary.reused,

@@ -3,8 +3,18 @@
 #[cfg(unix)]
 use nix::sys::resource::{Usage, UsageWho, getrusage};
 
+/// The most memory this process held so far, bytes; none where the system does not report it. Linux's getrusage also counts
+/// what the process held before it became this program, which for a child is the memory of its parent.
+#[cfg(target_os = "linux")]
+pub fn peak_rss() -> Option<usize> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kilobytes: usize = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
 /// The most memory this process held so far, bytes; none where the system does not report it.
-#[cfg(unix)]
+#[cfg(all(unix, not(target_os = "linux")))]
 pub fn peak_rss() -> Option<usize> {
     // Kilobytes, but for Apple's systems, where they are bytes.
     let unit = if cfg!(target_vendor = "apple") { 1 } else { 1024 };

@@ -1,5 +1,5 @@
-//! How far light at points is from a reference: root of the mean square over area, over the mean; the worst of the three
-//! channels; without the reference's own noise, which is independent of it.
+//! The error of light at points: the root mean square difference from a reference over area, divided by the mean, of the
+//! worst of the three channels. The variance of the reference's own noise, which is independent of it, is subtracted.
 
 use super::reference::Reference;
 use super::run::PointLight;
@@ -16,7 +16,7 @@ pub struct Errors {
 }
 
 impl Errors {
-    /// Of a run's light against the reference. Points that lie on no surface do not count.
+    /// The errors of a run's light against the reference. Points on no surface do not count.
     pub fn of(light: &[Option<PointLight>], reference: &Reference) -> Self {
         let error = |of: &dyn Fn(&PointLight) -> Rgb| {
             error(light.iter().map(|point| point.as_ref().map(of)), reference)
@@ -24,7 +24,7 @@ impl Errors {
         Self { elements: error(&|point| point.element), gathered: error(&|point| point.gathered) }
     }
 
-    /// Of one run's light against another's at the same points.
+    /// The difference between the light of two runs at the same points; `areas` as in [`Reference`].
     pub fn between(light: &[Option<PointLight>], other: &[Option<PointLight>], areas: &[f64]) -> Self {
         let error = |of: &dyn Fn(&PointLight) -> Rgb| {
             let other = other.iter().map(|point| point.as_ref().map(of));
@@ -34,7 +34,7 @@ impl Errors {
     }
 }
 
-/// The error of what is known at the points.
+/// The error of the irradiance (W/m²) that is known at the points.
 fn error(known: impl Iterator<Item = Option<Rgb>>, reference: &Reference) -> f64 {
     let known: Vec<(usize, Rgb)> = known.enumerate().filter_map(|(k, known)| Some((k, known?))).collect();
     let of = |c: usize| {

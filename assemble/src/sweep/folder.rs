@@ -1,4 +1,4 @@
-//! The folder of a sweep: one sweep at a time, and what it reads and writes there.
+//! The folder of a sweep: its lock, the points at which light is compared, and the files of the results.
 
 use super::page::page;
 use super::points::surface_points;
@@ -11,10 +11,10 @@ use equilux_formats::{Content, Error, Result, Scene};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-/// Points at which light is compared if nobody gives any.
+/// The number of points at which light is compared without a table of truth.
 const POINTS: usize = 1000;
 
-/// Make the folder and keep others out of it for as long as the file lives.
+/// Make the folder, and lock it for as long as the returned file lives. Fails if another sweep has locked it.
 pub fn alone(folder: &Path) -> Result<File> {
     let unusable = |error: std::io::Error| {
         let found = format!("cannot be used for the outputs ({error})");
@@ -24,9 +24,9 @@ pub fn alone(folder: &Path) -> Result<File> {
     let lock = File::create(folder.join("lock")).map_err(unusable)?;
     lock.try_lock().map_err(|_| {
         let remedy = "wait for it, or choose another folder with --out DIR";
-        Error::new(folder, "another sweep is at work here", "one at a time", remedy)
+        Error::new(folder, "another sweep is running here", "one at a time", remedy)
     })?;
-    // What runs left whose sweep was killed.
+    // Left by runs whose sweep was killed.
     for entry in fs::read_dir(folder).map_err(unusable)?.flatten() {
         if entry.file_name().to_string_lossy().starts_with("running-") {
             fs::remove_dir_all(entry.path()).map_err(unusable)?;
@@ -35,7 +35,8 @@ pub fn alone(folder: &Path) -> Result<File> {
     Ok(lock)
 }
 
-/// This program, and the content of everything that results depend on but for the arguments.
+/// The path of this program, and the content of all that results depend on beside the arguments: the program, the points
+/// and the files of the scene.
 pub fn identity(scene: &Scene, points: &Path) -> Result<(PathBuf, Content)> {
     let unreadable = |path: &Path, error: std::io::Error| {
         Error::new(path, format!("cannot be read ({error})"), "a readable file", "put it back and try again")
@@ -49,7 +50,7 @@ pub fn identity(scene: &Scene, points: &Path) -> Result<(PathBuf, Content)> {
     Ok((program, content))
 }
 
-/// Points on the scene's own faces, as a file.
+/// Write points on the surfaces of the scene as a table, and return its path.
 pub fn own_points(scene: &Scene, folder: &Path) -> Result<PathBuf> {
     let geometries: Vec<_> = scene.parts.iter().map(|part| subdivide(part, ElementSize::Mesh)).collect();
     let world = World::new(scene.instances.iter().map(|i| (&geometries[i.part.index()], i.placement)));
@@ -61,7 +62,7 @@ pub fn own_points(scene: &Scene, folder: &Path) -> Result<PathBuf> {
     Ok(path)
 }
 
-/// Write what was found.
+/// Write `sweep.csv`, `sweep.json` and `report.html`.
 pub fn write(folder: &Path, summary: &Summary) -> Result<()> {
     let json = serde_json::to_string_pretty(summary).expect("a summary is plain data") + "\n";
     output_file::write(&folder.join("sweep.csv"), |out| out.write_all(&csv(&summary.runs)))?;

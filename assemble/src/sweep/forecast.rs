@@ -1,10 +1,10 @@
-//! How long a run will take, from those that are done.
+//! Predicts the time and memory of a run from the runs that are complete.
 
 use super::run::Run;
 use super::setting::{Kind, Setting};
 
-/// Seconds that a run on so many elements will take: those of the run that is most like it, by powers of the number of
-/// elements. Zero if nothing is known.
+/// The expected wall time of a run on `elements` elements, seconds: that of the most similar run, scaled by a power of the
+/// number of elements. Zero if no run is complete.
 pub fn forecast(setting: &Setting, elements: usize, done: &[Run]) -> f64 {
     let kind = setting.kind;
     let larger = |run: &Run| elements as f64 / run.facts.elements.max(1) as f64;
@@ -21,26 +21,26 @@ pub fn forecast(setting: &Setting, elements: usize, done: &[Run]) -> f64 {
     known.map_or(0.0, |run| grown(run) * (guess(kind) / guess(run.setting.kind)).max(1.0))
 }
 
-/// Bytes that a run on so many elements will hold, where it holds a whole matrix; else none.
+/// Bytes of the matrix of a run on `elements` elements; none if the run stores no whole matrix.
 pub fn matrix_bytes(kind: Kind, elements: usize) -> Option<f64> {
     let pairs = (elements as f64).powi(2);
     match kind {
         Kind::Dense | Kind::Rays(_) => Some(8.0 * pairs),
-        // Each entry with its column.
+        // Each entry is stored with its column.
         Kind::Verified { .. } => Some(24.0 * pairs),
         Kind::Parts { tolerance: 0.0 } => Some(12.0 * pairs),
         Kind::Parts { .. } | Kind::Progressive { .. } => None,
     }
 }
 
-/// Bytes of memory that the system can give away now; none where it does not tell.
+/// Bytes of memory that are available now; none where the system does not report them.
 pub fn memory_available() -> Option<f64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find(|line| line.starts_with("MemAvailable:"))?;
     line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kilobytes| kilobytes * 1024.0)
 }
 
-/// Runs of one family take alike long for the same effort.
+/// Runs of the same family take the same time for the same effort and number of elements.
 fn family(kind: Kind) -> u8 {
     match kind {
         Kind::Parts { tolerance: 0.0 } => 0,
@@ -52,7 +52,8 @@ fn family(kind: Kind) -> u8 {
     }
 }
 
-/// What time is proportional to within a family: rays; shots, which halve what is unshot again and again.
+/// The quantity that time is proportional to within a family: rays, or shots, of which equally many halve the unshot light
+/// each time.
 fn effort(kind: Kind) -> f64 {
     match kind {
         Kind::Rays(rays) => f64::from(rays),
@@ -61,7 +62,7 @@ fn effort(kind: Kind) -> f64 {
     }
 }
 
-/// How time grows with the number of elements.
+/// The power of the number of elements that time grows with.
 fn exponent(kind: Kind) -> f64 {
     match kind {
         Kind::Parts { tolerance } if tolerance > 0.0 => 1.3,
@@ -70,7 +71,7 @@ fn exponent(kind: Kind) -> f64 {
     }
 }
 
-/// A guess at what kinds cost, relative to each other, until there are runs of them.
+/// The guessed cost of a kind, relative to the others, until a run of its family is complete.
 fn guess(kind: Kind) -> f64 {
     match kind {
         Kind::Parts { tolerance } if tolerance > 0.0 => 1.0,

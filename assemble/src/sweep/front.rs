@@ -1,8 +1,7 @@
-//! The Pareto front: which of many choices are worth making.
+//! The Pareto front: the choices that no other choice beats in both cost and error.
 
-/// The numbers of the choices that no other beats, by falling second value: whatever costs no more than one of these errs
-/// more, or it is one of them. In go pairs such as (seconds, error); of equal ones the first counts. What is no number is
-/// never chosen.
+/// The indices of the (cost, error) pairs on the front, by rising cost and falling error: any other choice that costs no
+/// more than one of these has a larger error. Of equal pairs the first counts. A pair with a NaN is never chosen.
 pub fn front(choices: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..choices.len())
         .filter(|&choice| !choices[choice].0.is_nan() && !choices[choice].1.is_nan())

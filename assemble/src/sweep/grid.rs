@@ -1,9 +1,9 @@
-//! Which settings are tried, and in which order: a base point of defaults, sizes of elements times tolerances, everything
-//! else one at a time, and the classic ways beside them. Coarse ones come first, so that little time gives a whole answer.
+//! The settings of a sweep, in order: element sizes times tolerances, all other options one at a time at the default
+//! settings, and the classic methods. Coarse settings come first, so that a small budget already gives a complete picture.
 
 use super::setting::{DEFAULT_TOLERANCE, Kind, Setting};
 
-/// Element sizes, in units of the scene's own, coarse to fine. Each has twice the elements of the one before.
+/// Element sizes, as multiples of the scene's default, coarse to fine. Each has about twice the elements of the one before.
 pub const SIZES: [f64; 8] = [
     4.0,
     2.0 * std::f64::consts::SQRT_2,
@@ -15,13 +15,13 @@ pub const SIZES: [f64; 8] = [
     0.5 * std::f64::consts::FRAC_1_SQRT_2,
 ];
 
-/// The default, those near it, and the exact matrix, which takes longest.
+/// Tolerances: the default, those near it, and the exact matrix, which takes longest.
 const TOLERANCES: [f64; 6] = [DEFAULT_TOLERANCE, 0.003, 0.001, 0.03, 0.1, 0.0];
 
-/// Rays a pair of the classic matrix.
+/// Rays for each pair of elements in the classic matrix.
 const RAYS: [u32; 3] = [1, 4, 16];
 
-/// One at a time, with everything else as by default.
+/// Options that are tried one at a time, with the default settings otherwise.
 const ALONE: [&str; 12] = [
     "--exchange jacobi",
     "--exchange gauss-seidel",
@@ -37,17 +37,17 @@ const ALONE: [&str; 12] = [
     "--threads 1",
 ];
 
-/// A size in metres as a person would write it.
+/// A size in metres, rounded to three significant digits.
 pub fn metres(size: f64) -> f64 {
     format!("{size:.2e}").parse().unwrap_or(size)
 }
 
-/// All settings, the most telling first. `size` is the scene's own, metres.
+/// All settings. `size` is the element size of the scene by default, metres.
 pub fn grid(size: f64) -> Vec<Setting> {
     SIZES.into_iter().flat_map(|factor| at_size(metres(size * factor), factor)).collect()
 }
 
-/// The settings with elements of a size, metres, that is `factor` times the scene's own.
+/// The settings with elements of `size` metres, `factor` times the scene's default.
 fn at_size(size: f64, factor: f64) -> Vec<Setting> {
     let at = |kind| Setting::new(kind, size);
     let mut settings: Vec<Setting> = TOLERANCES.map(|tolerance| at(Kind::Parts { tolerance })).into();

@@ -1,13 +1,13 @@
-//! Points spread over a scene's surfaces to compare light at: the same in every run, and as many on each element as its
-//! area asks for.
+//! Points on the surfaces of a scene at which light is compared: the same in every run, and their number on each element in
+//! proportion to its area.
 
 use crate::gather::points::Place;
 use equilux_formats::Element;
 use glam::DVec3;
 
-/// `count` points, each of which speaks for the same area. The k-th lies on the element in which the share (k + ½)/count of
-/// the whole area is reached, counted element by element; on it, at the k-th place of a sequence that fills a square evenly
-/// (Roberts 2018). None where nothing has an area.
+/// `count` points that each represent the same area. Point k lies on the element in which the cumulated area reaches the
+/// share (k + ½)/count of the whole, at place k of a sequence of low discrepancy (Roberts 2018). Empty if nothing has an
+/// area.
 pub fn surface_points(elements: &[Element], count: usize) -> Vec<Place> {
     let reached: Vec<f64> = elements
         .iter()
@@ -25,14 +25,13 @@ pub fn surface_points(elements: &[Element], count: usize) -> Vec<Place> {
     (0..count).map(point).collect()
 }
 
-/// The k-th place in the unit square: multiples of the powers of 1/p, where p³ = p + 1.
+/// Place k of the sequence in the unit square: multiples of powers of 1/p modulo 1, where p³ = p + 1.
 pub fn evenly(k: usize) -> (f64, f64) {
     let along = |step: f64| ((k as f64 + 0.5) * step).fract();
     (along(0.754_877_666_246_692_8), along(0.569_840_290_998_053_2))
 }
 
-/// The place on an element that a place in the unit square stands for. Areas of triangles and parallelograms stay in
-/// proportion.
+/// Maps the unit square onto an element; on triangles and parallelograms all areas scale alike.
 pub fn place_on(element: &Element, (u, v): (f64, f64)) -> DVec3 {
     match *element.corners.as_slice() {
         [a, b, c] if u + v > 1.0 => a + (b - a) * (1.0 - u) + (c - a) * (1.0 - v),

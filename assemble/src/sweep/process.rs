@@ -1,5 +1,5 @@
-//! Runs a setting in a process of its own, so that its memory and time are its own, and keeps what it told under a name that
-//! tells everything it depends on: a run that is there is not run again.
+//! Runs a setting in a process of its own, to measure its time and memory, and keeps the result under the hash of
+//! everything that it depends on, so that it is not run again.
 
 use super::run::{Facts, PointLight, Run};
 use super::setting::Setting;
@@ -12,12 +12,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How often it is asked whether a run has ended.
+/// The interval at which a run is checked for its end.
 const TICK: Duration = Duration::from_millis(5);
 
-/// What is the same for all runs.
+/// The inputs that all runs share.
 pub struct Runner<'a> {
-    /// The program.
+    /// The path of this program.
     pub program: PathBuf,
     /// The scene's file.
     pub scene: &'a Path,
@@ -29,9 +29,9 @@ pub struct Runner<'a> {
     pub folder: &'a Path,
     /// The content of program, scene and points.
     pub content: Content,
-    /// When a run that goes on is ended.
+    /// When a run that has not ended is killed.
     pub deadline: Instant,
-    /// The wish to stop.
+    /// Progress, and requests to stop.
     pub monitor: &'a Monitor,
 }
 
@@ -39,21 +39,21 @@ pub struct Runner<'a> {
 pub enum Ended {
     /// With a result.
     Done(Box<Run>),
-    /// With an error; what it said.
+    /// With an error, and this message.
     Failed(String),
-    /// By somebody's wish.
+    /// Killed, because the sweep was stopped.
     Stopped,
-    /// When the time was up.
+    /// Killed at the deadline.
     TimeUp,
 }
 
 impl Runner<'_> {
-    /// The result of this setting from an earlier sweep, if there is one.
+    /// The result of this setting that an earlier sweep kept, if any.
     pub fn kept(&self, setting: &Setting) -> Option<Run> {
         serde_json::from_slice(&fs::read(self.record(setting)).ok()?).ok()
     }
 
-    /// Run this setting from nothing, and keep the result.
+    /// Run this setting with an empty cache, and keep the result. Fails if the folder cannot be used.
     pub fn run(&self, setting: &Setting) -> Result<Ended> {
         let unusable = |error: std::io::Error| {
             let found = format!("cannot be used for a run ({error})");
@@ -67,7 +67,7 @@ impl Runner<'_> {
         };
         let wall = start.elapsed().as_secs_f64();
         if self.monitor.stopped() {
-            // The run may have heard the same wish and ended early.
+            // The signal reached the run too, and may have ended it early.
             return Ok(Ended::Stopped);
         }
         if !success {
@@ -81,7 +81,7 @@ impl Runner<'_> {
         Ok(Ended::Done(Box::new(run)))
     }
 
-    /// The command line, for a person.
+    /// The command line that repeats the run.
     pub fn command(&self, setting: &Setting) -> String {
         let arguments = setting.arguments(&self.scene.display().to_string());
         [vec!["assemble".to_owned()], arguments, self.more.to_vec()].concat().join(" ")
@@ -101,7 +101,7 @@ impl Runner<'_> {
             .spawn()
     }
 
-    /// Whether the run ended well; none if it was ended.
+    /// Whether the run ended well; none if it was killed.
     fn wait(&self, mut running: Child) -> std::io::Result<Option<bool>> {
         let mut shown = 0;
         let start = Instant::now();

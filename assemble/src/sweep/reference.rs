@@ -1,4 +1,4 @@
-//! What runs are compared with: irradiance at points, from a file or from the finest run of the sweep.
+//! The reference of a sweep: irradiance at points, from a file or from the finest run.
 
 use super::run::Run;
 use crate::gather::points::places;
@@ -10,7 +10,7 @@ use std::path::Path;
 /// Irradiance at points.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    /// The area that each point speaks for, in any unit.
+    /// The area that each point represents, in any unit.
     pub areas: Vec<f64>,
     /// W/m².
     pub irradiance: Vec<Rgb>,
@@ -18,14 +18,15 @@ pub struct Reference {
     pub noise: Vec<Rgb>,
 }
 
-/// What a file of truth should hold, and what to do if it does not.
+/// The expected content of a table of truth, and the remedy in errors.
 const EXPECTED: [&str; 2] = [
     "columns x, y, z, nx, ny, nz, area, Hc_r, Hc_g, Hc_b and, if there is noise, Hc_se_r, Hc_se_g, Hc_se_b, with a number in every line",
     "give a file as scenes/README.md describes it with --truth FILE.csv",
 ];
 
 impl Reference {
-    /// From a file in the form of `scenes/*/truth.csv`: irradiance at the centroids of elements, with their areas.
+    /// Read a table in the form of `scenes/*/truth.csv`: irradiance at the centroids of elements, with their areas. Fails if a
+    /// column is missing, a number is not finite, or an area is not positive.
     pub fn read(path: &Path) -> Result<Self> {
         let table = Table::read(path, EXPECTED)?;
         places(&table, DVec3::ZERO)?;
@@ -42,13 +43,13 @@ impl Reference {
         Ok(Self { areas, irradiance, noise })
     }
 
-    /// The light that a run gathered at points which all speak for the same area.
+    /// The light that a run gathered at points that represent equal areas.
     pub fn of(run: &Run) -> Self {
         let gathered = run.light.iter().map(|point| point.as_ref().map(|point| point.gathered));
         Self::without_noise(&vec![1.0; run.light.len()], gathered)
     }
 
-    /// Light at points that speak for these areas; those where it is not known count for nothing.
+    /// Light at points that represent these areas; points where it is unknown get an area of zero.
     pub fn without_noise(areas: &[f64], known: impl Iterator<Item = Option<Rgb>>) -> Self {
         let noise = vec![[0.0; 3]; areas.len()];
         let (areas, irradiance) = areas
@@ -72,8 +73,8 @@ impl Reference {
         (0..3).map(of).fold(0.0, f64::max)
     }
 
-    /// Errors below this share of the mean cannot be told from none, as taking out the noise leaves the chance of it: the
-    /// variance of n squares of standard normal numbers is 2n.
+    /// The smallest error that can be told from zero, as a share of the mean. Subtracting the noise leaves its statistical
+    /// error: the variance of a sum of n squares of standard normal numbers is 2n.
     pub fn resolves(&self) -> f64 {
         self.noise_share() * (2.0 / self.areas.len() as f64).powf(0.25)
     }

@@ -1,5 +1,5 @@
-//! What one run in a process of its own told: its facts, from the report it printed, and its light at the points. Kept as
-//! JSON so that a sweep that was stopped goes on where it was.
+//! The result of one run: facts from the report that its process printed, and its light at the points. Kept as JSON, so that
+//! a sweep that was stopped continues where it ended.
 
 use super::setting::Setting;
 use crate::report::seconds::Seconds;
@@ -10,13 +10,13 @@ use std::collections::BTreeMap;
 /// A finished run.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Run {
-    /// What was asked for.
+    /// The setting.
     pub setting: Setting,
-    /// The command line, for a person to repeat it.
+    /// The command line that repeats it.
     pub command: String,
     /// Wall time of the whole process, seconds.
     pub wall: f64,
-    /// What its report says.
+    /// Facts from its report.
     pub facts: Facts,
     /// Its light at the points, in their order; none for those that lie on no surface.
     pub light: Vec<Option<PointLight>>,
@@ -31,13 +31,13 @@ pub struct PointLight {
     pub element: Rgb,
 }
 
-/// What a sweep reads of a report; the same names as there.
+/// The fields of a report that a sweep reads, under the same names.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Facts {
     /// Number of elements.
     pub elements: usize,
-    /// Where time went.
+    /// Times.
     pub seconds: Seconds,
     /// Memory.
     pub bytes: Bytes,
@@ -47,7 +47,7 @@ pub struct Facts {
     pub coarse_unknowns: usize,
     /// Number of instances.
     pub instances: usize,
-    /// What became of blocks.
+    /// Computed, reused and skipped blocks.
     pub blocks: Blocks,
     /// Shots of progressive refinement.
     pub shots: Option<usize>,
@@ -57,9 +57,9 @@ pub struct Facts {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Bytes {
-    /// All form factors as they are kept.
+    /// Size of the stored form factors.
     pub stored: usize,
-    /// The most the process held.
+    /// Peak memory of the process.
     pub peak_rss: Option<usize>,
 }
 
@@ -67,7 +67,7 @@ pub struct Bytes {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Round {
-    /// What is proved, W/m²; null before anything is.
+    /// The proved bound, W/m²; null before there is one.
     pub error_bound: Option<f64>,
     /// The largest error of any element, W/m².
     pub true_error: Option<f64>,
@@ -77,6 +77,6 @@ pub struct Round {
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Blocks {
-    /// What was left out because it changes no radiosity, and how often, by reason.
+    /// The number of blocks that were skipped because they change no radiosity, by reason.
     pub coupling_left_out: BTreeMap<String, usize>,
 }

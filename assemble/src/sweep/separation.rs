@@ -1,6 +1,6 @@
-//! Where errors come from. Elements of a size have an error even if everything else is exact (discretisation); clusters add
-//! to it what a run differs by from the exact run on the same elements (compression); an exchange that ends early adds what
-//! it differs by from one that does not (iteration).
+//! Separates errors by their source. Discretisation: the error of an exact run, because of the size of its elements.
+//! Compression: the difference of a run with clusters from the exact run on the same elements. Iteration: the difference of an
+//! exchange that ends early from one that does not.
 
 use super::errors::Errors;
 use super::reference::Reference;
@@ -8,10 +8,10 @@ use super::run::Run;
 use super::setting::{DEFAULT_TOLERANCE, Kind, Setting};
 use serde::Serialize;
 
-/// One kind of error of one choice.
+/// The error of one choice from one source.
 #[derive(Debug, Clone, Serialize)]
 pub struct Separated {
-    /// Where it comes from.
+    /// The source.
     pub from: Source,
     /// The choice: `0.25 m`, `tolerance 0.01 at 0.25 m`.
     pub choice: String,
@@ -21,19 +21,19 @@ pub struct Separated {
     pub errors: Errors,
 }
 
-/// Where an error comes from.
+/// The source of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Source {
     /// The size of elements.
     Discretisation,
-    /// Clusters that share a form factor.
+    /// Clusters of elements with one form factor.
     Compression,
     /// An exchange that ends early.
     Iteration,
 }
 
-/// All that the runs tell.
+/// The separated errors of all runs that have a run to compare with.
 pub fn separated(runs: &[Run], reference: &Reference) -> Vec<Separated> {
     let mut found = vec![];
     for exact in runs.iter().filter(|run| is_plain(&run.setting) && tolerance(run) == Some(0.0)) {

@@ -1,26 +1,26 @@
-//! One point of the grid: which program task with which options.
+//! One point of the grid: the method and its options.
 
 use serde::{Deserialize, Serialize};
 
-/// What computes the light.
+/// The method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Kind {
-    /// Our parts, at a tolerance.
+    /// Parts, at a tolerance.
     Parts {
         /// `--tolerance`.
         tolerance: f64,
     },
-    /// Our parts, compared round by round with the classic matrix; no point of the plots.
+    /// Parts, compared round by round with the classic matrix; not in the charts of errors.
     Verified {
         /// `--tolerance`.
         tolerance: f64,
     },
     /// The classic dense matrix, exact.
     Dense,
-    /// The classic dense matrix with so many rays a pair.
+    /// The classic dense matrix with this many rays for each pair.
     Rays(u32),
-    /// Progressive refinement, which keeps no matrix, down to a share of unshot light.
+    /// Progressive refinement, which stores no matrix, down to a share of unshot light.
     Progressive {
         /// `--unshot`.
         unshot: f64,
@@ -30,42 +30,42 @@ pub enum Kind {
 /// A point of the grid.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Setting {
-    /// What computes the light.
+    /// The method.
     pub kind: Kind,
     /// `--element-size`, metres.
     pub element_size: f64,
-    /// Further options, where they are other than by default.
+    /// Further options that differ from the default.
     pub more: Vec<String>,
 }
 
 impl Setting {
-    /// With no further options.
+    /// A setting without further options.
     pub fn new(kind: Kind, element_size: f64) -> Self {
         Self { kind, element_size, more: vec![] }
     }
 
-    /// With further options, such as `--exchange jacobi`.
+    /// The same with further options, such as `--exchange jacobi`.
     pub fn with(mut self, more: &str) -> Self {
         self.more.extend(more.split_whitespace().map(str::to_owned));
         self
     }
 
-    /// Whether it is one of ours and a point of the plots.
+    /// Whether it is a run of parts that competes in the charts.
     pub fn is_ours(&self) -> bool {
         matches!(self.kind, Kind::Parts { .. })
     }
 
-    /// Whether it is one of the classic ways.
+    /// Whether it is a classic method.
     pub fn is_classic(&self) -> bool {
         matches!(self.kind, Kind::Dense | Kind::Rays(_) | Kind::Progressive { .. })
     }
 
-    /// Whether a person gets this without options, where elements are so large by default.
+    /// Whether these are the default settings of a scene with this element size by default, metres.
     pub fn is_default(&self, element_size: f64) -> bool {
         *self == Self::new(Kind::Parts { tolerance: DEFAULT_TOLERANCE }, element_size)
     }
 
-    /// The arguments of `assemble` that change the light of `scene`, without those that say where to write.
+    /// The arguments of `assemble` for the light of `scene`, without those for outputs.
     pub fn arguments(&self, scene: &str) -> Vec<String> {
         let words = match self.kind {
             Kind::Parts { tolerance } => format!("SCENE --tolerance {tolerance}"),
@@ -79,7 +79,7 @@ impl Setting {
         words.map(str::to_owned).chain(self.more.iter().cloned()).collect()
     }
 
-    /// For a person.
+    /// The setting in words.
     pub fn label(&self) -> String {
         let what = match self.kind {
             Kind::Parts { tolerance } => format!("tolerance {tolerance}"),
@@ -100,9 +100,9 @@ impl Setting {
 pub struct Skipped {
     /// The setting.
     pub setting: Setting,
-    /// Why not.
+    /// The reason.
     pub why: String,
 }
 
-/// What `--tolerance` is unless told.
+/// The default of `--tolerance`.
 pub const DEFAULT_TOLERANCE: f64 = 0.01;

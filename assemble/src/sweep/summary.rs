@@ -1,5 +1,5 @@
-//! What a sweep found, as `sweep.json` has it: one row a run with its costs and errors, which of them are on the front, and
-//! what follows from comparing them.
+//! The results of a sweep, as `sweep.json` has them: one row for each run with its costs and errors, the front, the
+//! cheapest settings, and conclusions.
 
 use super::findings::findings;
 use super::front::front;
@@ -10,69 +10,69 @@ use super::separation::{Separated, separated};
 use super::setting::{Kind, Setting, Skipped};
 use serde::Serialize;
 
-/// Everything.
+/// The results of a sweep.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
     /// The scene's name.
     pub scene: String,
-    /// What runs are compared with.
+    /// The reference that runs are compared with.
     pub reference: Compared,
     /// The element size that the scene gets by default, metres.
     pub default_element_size: f64,
-    /// The runs, in the order they were asked for.
+    /// The runs, in the order in which they were started.
     pub runs: Vec<Row>,
-    /// For some errors the quickest of our settings that is no further off.
+    /// For some target errors the quickest setting of parts that reaches it.
     pub cheapest: Vec<Cheapest>,
-    /// Errors by where they come from.
+    /// Errors by source.
     pub separated: Vec<Separated>,
     /// Exchanges round by round, each with the command.
     pub exchanges: Vec<Exchange>,
-    /// What the scene did and did not need, one sentence each.
+    /// Conclusions, one sentence each.
     pub findings: Vec<String>,
-    /// What was not run and why, one sentence each.
+    /// Settings that were not run and why, one sentence each.
     pub skipped: Vec<String>,
-    /// Runs that were there from before.
+    /// The number of runs kept from an earlier sweep.
     pub reused: usize,
     /// Wall time of this sweep.
     pub seconds: f64,
 }
 
-/// The quickest settings for an error.
+/// The quickest settings for a target error, as indices of rows.
 #[derive(Debug, Clone, Serialize)]
 pub struct Cheapest {
     /// The error, as a share of the mean.
     pub error: f64,
-    /// The number of the run that gathers so well.
+    /// The run with this error of light at points.
     pub gathered: Option<usize>,
-    /// The number of the run whose elements are so good.
+    /// The run with this error of light on elements.
     pub elements: Option<usize>,
 }
 
 /// An exchange round by round.
 #[derive(Debug, Clone, Serialize)]
 pub struct Exchange {
-    /// For a person.
+    /// Its name.
     pub label: String,
     /// The command line.
     pub command: String,
-    /// Proved and true, W/m².
+    /// Proved and true errors, W/m².
     pub rounds: Vec<Round>,
 }
 
-/// The errors that settings are named for.
+/// The target errors.
 const TARGETS: [f64; 3] = [0.05, 0.02, 0.01];
 
-/// What a sweep has done.
+/// The runs of a sweep, and what it skipped.
 pub struct Found<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// Its own element size, metres.
+    /// Its element size by default, metres.
     pub size: f64,
     /// Runs.
     pub runs: &'a [Run],
-    /// How many of them were there.
+    /// The number of these that were kept from an earlier sweep.
     pub reused: usize,
-    /// What was not run.
+    /// The settings that were not run.
     pub skipped: &'a [Skipped],
     /// Wall time.
     pub seconds: f64,
@@ -81,7 +81,7 @@ pub struct Found<'a> {
 }
 
 impl Summary {
-    /// Of all that was found.
+    /// Of all runs, compared with the reference.
     pub fn of(found: &Found, reference: &Reference, compared: Compared) -> Self {
         let mut runs: Vec<Row> = found
             .runs
@@ -117,7 +117,7 @@ impl Summary {
     }
 }
 
-/// Which of our rows are on the front of this cost and error.
+/// Which rows are on the front of this cost and error.
 fn on_front(rows: &[Row], of: impl Fn(&Row) -> (f64, f64)) -> Vec<bool> {
     let none = (f64::NAN, f64::NAN);
     let choices: Vec<(f64, f64)> =
@@ -126,7 +126,7 @@ fn on_front(rows: &[Row], of: impl Fn(&Row) -> (f64, f64)) -> Vec<bool> {
     (0..rows.len()).map(|row| chosen.contains(&row)).collect()
 }
 
-/// The quickest of our rows that errs no more.
+/// The quickest competing row with at most this error.
 fn quickest(rows: &[Row], error: f64, of: impl Fn(&Row) -> (f64, f64)) -> Option<usize> {
     let good = |&row: &usize| rows[row].competes() && of(&rows[row]).1 <= error;
     (0..rows.len()).filter(good).min_by(|&a, &b| of(&rows[a]).0.total_cmp(&of(&rows[b]).0))

@@ -5,7 +5,7 @@ use super::row::Row;
 use super::setting::Kind;
 use crate::gather::points::Place;
 
-/// The first line: seconds are wall time unless `cpu`, errors shares of the mean, and what is not known is empty.
+/// The first line. Seconds are wall time but for `cpu`, errors are shares of the mean, and unknown values are empty.
 pub const HEADER: [&str; 25] = [
     "method",
     "element_size_m",
@@ -34,7 +34,7 @@ pub const HEADER: [&str; 25] = [
     "command",
 ];
 
-/// The table.
+/// `sweep.csv`: the header, and one line for each row.
 pub fn csv(rows: &[Row]) -> Vec<u8> {
     csv_bytes(std::iter::once(HEADER.map(str::to_owned)).chain(rows.iter().map(line)))
 }

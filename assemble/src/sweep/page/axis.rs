@@ -1,7 +1,7 @@
 //! An axis of a chart: a range of values on a stretch of the drawing, and where its ticks and labels are. Logarithmic
 //! axes have a tick at every power of ten and, where there is room, at 2 to 9 times it.
 
-/// The largest number of decades in which ticks between the powers of ten are told apart.
+/// The largest number of decades in which ticks between the powers of ten are drawn.
 const MINOR_DECADES: f64 = 6.0;
 
 /// The digits that may have labels, the densest choice first.
