@@ -7,7 +7,7 @@
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use equilux_bake::gltf_import::import_scene;
-use equilux_formats::{LightKind, LocalSolver, Scene};
+use equilux_formats::{LightKind, LocalSolver, Rgb, Scene};
 use glam::{DAffine3, DMat3, DVec3};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -484,7 +484,10 @@ fn materials_become_reflectance_and_emission() {
     });
     let scene = import(&Gltf::square_at(json!({})).set("/materials/0", material));
     let lamp = &scene.parts[0].materials[0];
-    assert_eq!((lamp.name.as_str(), lamp.double_sided, lamp.reflectance), ("lamp", true, [0.25, 0.5, 1.0]));
+    assert_eq!(
+        (lamp.name.as_str(), lamp.double_sided, lamp.reflectance),
+        ("lamp", true, Rgb([0.25, 0.5, 1.0]))
+    );
     assert_eq!(lamp.emission, [8.0 * PI, 4.0 * PI, 0.0]);
     assert_eq!(scene.notes, Vec::<String>::new());
 }
@@ -562,13 +565,16 @@ fn lights_and_cameras_stand_where_their_nodes_do() {
     ]));
     let scene = import(&gltf);
     let [bulb, spot, sun] = &scene.lights[..] else { panic!("three lights, found {:?}", scene.lights) };
-    assert_eq!((bulb.kind, bulb.position, bulb.intensity), (LightKind::Point, DVec3::Z, [1.0; 3]));
+    assert_eq!((bulb.kind, bulb.position, bulb.intensity), (LightKind::Point, DVec3::Z, Rgb::WHITE));
     assert_eq!(
         (spot.kind, spot.position),
         (LightKind::Spot { inner: 0.25, outer: 0.5 }, DVec3::new(1., 2., 3.))
     );
-    assert_eq!((spot.direction, spot.intensity), (DVec3::Z, [4.0, 2.0, 0.0]));
-    assert_eq!((sun.kind, sun.direction, sun.intensity), (LightKind::Directional, DVec3::NEG_Z, [6.0; 3]));
+    assert_eq!((spot.direction, spot.intensity), (DVec3::Z, Rgb([4.0, 2.0, 0.0])));
+    assert_eq!(
+        (sun.kind, sun.direction, sun.intensity),
+        (LightKind::Directional, DVec3::NEG_Z, Rgb::splat(6.0))
+    );
     let [eye] = &scene.cameras[..] else { panic!("one camera, found {:?}", scene.cameras) };
     assert_eq!((eye.name.as_str(), eye.vertical_fov, eye.aspect), ("eye", 0.5, Some(1.5)));
     assert_eq!(eye.placement, DAffine3::from_translation(DVec3::X * 4.0), "cameras have no scale");

@@ -28,7 +28,7 @@ pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics, Tints};
 pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
-pub use rgb::{Rgb, luminance};
+pub use rgb::Rgb;
 pub use rows::{Precision, RowGroup, RowSumDefect, Rows, SINGLE_ROUNDING};
 pub use scene::{Camera, Instance, LightKind, LightUnits, PunctualLight, Repainted, Scene};
 pub use solution::{Solution, SolvedInstance};

@@ -3,7 +3,7 @@
 use equilux_formats::{
     Answers, BakedGeometry, BakedLight, ClusterTree, Content, Corners, Element, Error, FORMAT_VERSION, Face,
     FaceId, Factors, Geometry, Kind, LocalEquilibrium, LocalSolver, Lookup, Lu, Manifest, MaterialId, Optics,
-    Precision, Reader, RowGroup, Rows, Store, Stored, Writer,
+    Precision, Reader, Rgb, RowGroup, Rows, Store, Stored, Writer,
 };
 use glam::DVec3;
 use proptest::prelude::*;
@@ -37,14 +37,16 @@ fn part() -> BakedGeometry {
 fn light() -> BakedLight {
     let lu = |pivot| Lu { size: 2, packed: vec![pivot, 0.5, -0.25, 0.75], rows: vec![1, 0] };
     let factors = Some(Factors { channels: vec![lu(1.0), lu(0.9)], of_channel: [0, 1, 0] });
-    let optics =
-        Optics { reflectance: vec![[0.5, 0.25, 0.5]; 2], emission: vec![[0.0; 3], [10.0, 1e12, 1e-12]] };
-    let answers = Answers {
-        radiosity: vec![vec![[0.5, 0.25, 0.0]; 2]],
-        matrix: vec![[0.125, 1e-9, 0.0]],
-        returned: [0.75, 0.5, 0.0],
+    let optics = Optics {
+        reflectance: vec![Rgb([0.5, 0.25, 0.5]); 2],
+        emission: vec![Rgb::BLACK, Rgb([10.0, 1e12, 1e-12])],
     };
-    let radiosity = vec![[1.0 / 3.0; 3]; 2];
+    let answers = Answers {
+        radiosity: vec![vec![Rgb([0.5, 0.25, 0.0]); 2]],
+        matrix: vec![Rgb([0.125, 1e-9, 0.0])],
+        returned: Rgb([0.75, 0.5, 0.0]),
+    };
+    let radiosity = vec![Rgb::splat(1.0 / 3.0); 2];
     let local = LocalEquilibrium { solver: LocalSolver::Direct, radiosity, factors, answers };
     BakedLight { optics, local }
 }

@@ -1,6 +1,6 @@
 //! Parts made by hand as glTF files: in go nodes, each with a part, its place and extras; out comes a `.glb` file.
 
-use equilux_formats::{Material, MaterialId, Part, Surface};
+use equilux_formats::{Material, MaterialId, Part, Rgb, Surface};
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -164,11 +164,11 @@ fn gltf_material(material: &Material) -> Value {
     let radiance = material.emission.map(|e| e / PI);
     // glTF wants emissive factors in 0..1, and their strength apart.
     let strength = radiance.iter().fold(1.0, |most: f64, &l| most.max(l));
-    let [r, g, b] = material.reflectance;
+    let Rgb([r, g, b]) = material.reflectance;
     json!({
         "name": material.name,
         "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0 },
-        "emissiveFactor": radiance.map(|l| l / strength),
+        "emissiveFactor": radiance / strength,
         "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": strength } },
         "doubleSided": material.double_sided,
     })

@@ -207,7 +207,7 @@ fn material(lightmap: &Lightmap, instance: usize, primitive: &Primitive, look: &
     }
 }
 
-fn opaque([r, g, b]: Rgb) -> [f64; 4] {
+fn opaque(Rgb([r, g, b]): Rgb) -> [f64; 4] {
     [r, g, b, 1.0]
 }
 

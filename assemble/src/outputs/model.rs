@@ -108,7 +108,7 @@ impl Piece {
         let origin = corners.copied().fold(DVec3::INFINITY, DVec3::min).as_vec3();
         let mut vertices = Vec::with_capacity(6 * elements.len());
         for (element, &b) in elements.iter().zip(radiosity) {
-            let colour = DVec3::from(exposure.shown(b)).as_vec3();
+            let colour = DVec3::from(exposure.shown(b).0).as_vec3();
             vertices.extend(triangles(element).map(|p| [(p - origin.as_dvec3()).as_vec3(), colour]));
         }
         Self { origin, vertices }

@@ -1,6 +1,6 @@
 //! A part as a binary glTF file: one mesh, a primitive a material, two triangles a rectangle.
 
-use equilux_formats::{Material, Part, Surface};
+use equilux_formats::{Material, Part, Rgb, Surface};
 use glam::{DVec3, Vec3};
 use gltf::binary::{Glb, Header};
 use serde_json::{Value, json};
@@ -72,14 +72,14 @@ fn extras(part: &Part) -> Value {
 
 /// Emission E = πL; glTF's strength carries what is above one.
 fn material_json(material: &Material) -> Value {
-    let [red, green, blue] = material.reflectance;
+    let Rgb([red, green, blue]) = material.reflectance;
     let radiance = material.emission.map(|e| e / PI);
     let strength = radiance.into_iter().fold(1.0, f64::max);
     let mut json = json!({
         "pbrMetallicRoughness": {
             "baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0,
         },
-        "emissiveFactor": radiance.map(|l| l / strength),
+        "emissiveFactor": radiance / strength,
     });
     if strength > 1.0 {
         json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = json!(strength);
