@@ -3,7 +3,7 @@
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use equilux_bake::gltf_import::import_scene;
-use equilux_formats::Scene;
+use equilux_formats::{Scene, glb};
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::fs;
@@ -130,25 +130,7 @@ impl Gltf {
 }
 
 pub fn container(json: &[u8], binary: &[u8]) -> Vec<u8> {
-    let padded = |bytes: &[u8], with: u8| {
-        let mut bytes = bytes.to_vec();
-        bytes.resize(bytes.len().next_multiple_of(4), with);
-        bytes
-    };
-    let (json, binary) = (padded(json, b' '), padded(binary, 0));
-    let length = 12 + 8 + json.len() + 8 + binary.len();
-    let numbers =
-        |values: &[usize]| values.iter().flat_map(|&v| (v as u32).to_le_bytes()).collect::<Vec<u8>>();
-    [
-        b"glTF".to_vec(),
-        numbers(&[2, length, json.len()]),
-        b"JSON".to_vec(),
-        json,
-        numbers(&[binary.len()]),
-        b"BIN\0".to_vec(),
-        binary,
-    ]
-    .concat()
+    glb::file(json, binary).expect("a small file")
 }
 
 pub struct Folder(pub TempDir);
