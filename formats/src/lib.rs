@@ -9,6 +9,7 @@ mod container;
 mod error;
 mod fingerprint;
 mod geometry;
+pub mod glb;
 mod ids;
 mod part;
 mod rgb;

@@ -1,6 +1,6 @@
 //! What a mesh hides by its silhouette, against clipping by each of its faces, and against the light that must arrive.
 
-#[path = "../../tests/src/curved.rs"]
+#[path = "../../../tests/src/curved.rs"]
 mod curved;
 
 use curved::{Triangle, sphere, torus};
