@@ -4,6 +4,7 @@
 use super::Node;
 use super::gather::Active;
 use equilux_bake::equilibrium::{added, scaled, subtract};
+use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -28,16 +29,11 @@ pub struct Group<'a> {
 pub fn groups<'a>(nodes: &'a [Node<'a>]) -> Vec<Group<'a>> {
     let senders = ranges(nodes.iter().map(|node| node.clusters.nodes()));
     let sees: Vec<Vec<usize>> = nodes.par_iter().map(|node| seen_by(node, &senders)).collect();
-    let mut group_of: Vec<usize> = (0..nodes.len()).collect();
+    let mut sets = DisjointSets::new(nodes.len());
     for (k, seen) in sees.iter().enumerate() {
-        for &l in seen {
-            let (a, b) = (group_of[k], group_of[l]);
-            group_of.iter_mut().filter(|group| **group == a.max(b)).for_each(|group| *group = a.min(b));
-        }
+        seen.iter().for_each(|&l| sets.join(k, l));
     }
-    let members = |group: usize| (0..nodes.len()).filter(|&k| group_of[k] == group).collect::<Vec<_>>();
-    let heads = (0..nodes.len()).filter(|&k| group_of[k] == k);
-    heads.map(|head| Group::of(nodes, members(head), &senders, &sees)).collect()
+    sets.into_sets().into_iter().map(|members| Group::of(nodes, members, &senders, &sees)).collect()
 }
 
 /// The instances that a node receives from.
