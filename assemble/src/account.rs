@@ -3,10 +3,9 @@
 use crate::exchange::Node;
 use crate::placed::Placed;
 use crate::proof::enclosure::{OFF, is_compressed};
-use crate::report::Defect;
 use equilux_bake::equilibrium::added;
 use equilux_bake::equilibrium::endless::endless_light;
-use equilux_formats::{Error, Optics, Result, Rgb};
+use equilux_formats::{Error, Optics, Result, Rgb, RowSumDefect};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -29,13 +28,9 @@ pub fn rms_over_mean(placed: &Placed, values: &[Rgb], unit: &[Rgb]) -> f64 {
 }
 
 /// How far the rows of the whole matrix are from summing to one.
-pub fn row_sum_defect(nodes: &[Node]) -> Defect {
-    let over =
-        nodes.par_iter().map(|node| row_sums(node).map(|sum| sum - 1.0).collect()).collect::<Vec<Vec<f64>>>();
-    let over = over.concat();
-    let max = over.iter().fold(0.0, |max: f64, over| max.max(over.abs()));
-    let mean = over.iter().map(|over| over.abs()).sum::<f64>() / over.len().max(1) as f64;
-    Defect { max, mean, excess: over.into_iter().fold(0.0, f64::max) }
+pub fn row_sum_defect(nodes: &[Node]) -> RowSumDefect {
+    let sums = nodes.par_iter().map(|node| row_sums(node).collect()).collect::<Vec<Vec<f64>>>();
+    RowSumDefect::of(&sums.concat())
 }
 
 /// Σ_j F_ij of every receiver of an instance, over all senders of the scene.

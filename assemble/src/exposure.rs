@@ -4,7 +4,7 @@
 //! t(x) = x up to the knee s = 0.8 and t(x) = 1 − (1 − s)·exp(−(x − s)/(1 − s)) above: one smooth curve that leaves
 //! most of the picture as it is and lets lamps fade into white.
 
-use equilux_formats::Rgb;
+use equilux_formats::{Rgb, luminance};
 use std::f64::consts::PI;
 
 /// Where the tone curve leaves the straight line.
@@ -43,11 +43,6 @@ impl Exposure {
 fn bright(mut lights: Vec<f64>) -> Option<f64> {
     let rank = (lights.len().checked_sub(1)? as f64 * BELOW_KNEE) as usize;
     Some(*lights.select_nth_unstable_by(rank, f64::total_cmp).1)
-}
-
-/// Luminance of linear RGB, ITU-R BT.709.
-pub fn luminance([r, g, b]: Rgb) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 fn tone(x: f64) -> f64 {

@@ -4,15 +4,8 @@
 use super::average::{Piece, centre};
 use super::{Gather, receiver};
 use equilux_bake::treecode::{EXACT, Resolution};
-use equilux_formats::{Element, Rgb};
+use equilux_formats::{Element, Rgb, luminance};
 use glam::DVec3;
-
-/// Luminance of linear RGB with BT.709 primaries (ITU-R BT.709, item 3.2).
-const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
-
-fn luminance(light: Rgb) -> f64 {
-    (0..3).map(|c| LUMINANCE[c] * light[c]).sum()
-}
 
 impl Gather {
     /// Σ_j Y_j ω_j / Σ_j Y_j at the middle of each piece, with the luminance Y_j of F_ij B_j and the direction ω_j to the

@@ -3,10 +3,9 @@
 
 use super::interpolation::Interpolated;
 use crate::canvas::Canvas;
-use crate::exposure::luminance;
 use crate::picture::BACKGROUND;
 use crate::points::{Place, located, read_light};
-use equilux_formats::{Element, Result, Rgb};
+use equilux_formats::{Element, Result, Rgb, luminance};
 use glam::DVec3;
 use image::RgbImage;
 use rstar::RTree;

@@ -10,6 +10,7 @@ pub use summary::{Run, summary};
 
 use crate::advice::Advice;
 use crate::exchange::energy::Energy;
+use equilux_formats::RowSumDefect;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -52,7 +53,7 @@ pub struct Report {
     /// which is exact by rows and not by columns.
     pub column_sums: [f64; 2],
     /// How far row sums are from one: zero in a closed scene.
-    pub row_sum_defect: Defect,
+    pub row_sum_defect: RowSumDefect,
     /// The comparison with the classic matrix, if asked for.
     pub verify: Option<Verify>,
     /// What became of each part and block and why, one sentence each.
@@ -213,17 +214,6 @@ pub struct Bytes {
     pub largest_block: usize,
     /// The most the process held, where the system tells; before any verification.
     pub peak_rss: Option<usize>,
-}
-
-/// Distance of row sums from one.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Defect {
-    /// The worst row.
-    pub max: f64,
-    /// The mean over all rows.
-    pub mean: f64,
-    /// By how much the largest sum exceeds one; 0 if none does.
-    pub excess: f64,
 }
 
 /// The comparison with the classic matrix.
