@@ -1,5 +1,5 @@
-//! What is being done, how far it is, and whether somebody asked to stop. Shared between the threads that work and
-//! the one that shows it.
+//! The present stage of a run, its progress, and whether it is to stop. Shared between the threads that compute and the
+//! one that shows progress.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -45,7 +45,7 @@ impl Monitor {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Whether somebody asked for an end.
+    /// Whether the run is to stop.
     pub fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

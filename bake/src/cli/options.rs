@@ -32,7 +32,7 @@ pub struct SceneOptions {
     /// Make parts by this plane, such as x=1.5; may be given several times
     #[arg(long, value_name = "AXIS=METRES", value_parser = cut)]
     pub cut: Vec<Cut>,
-    /// Who solves a part's own equilibrium [default: direct for small parts, iterative for large]
+    /// Solver for each part's local equilibrium [default: direct for small parts, iterative for large]
     #[arg(long, value_name = "SOLVER")]
     pub local_solver: Option<Solver>,
     /// Threads to use [default: all]

@@ -6,7 +6,7 @@ use crate::world::World;
 use equilux_formats::Element;
 use std::ops::Range;
 
-/// Who receives.
+/// The receivers of a block.
 #[derive(Debug, Clone, Copy)]
 pub enum Audience<'a> {
     /// The elements of an instance of the world.
@@ -26,11 +26,11 @@ impl<'a> Audience<'a> {
     }
 }
 
-/// What is asked for: one block.
+/// One block to be computed.
 pub struct Request<'a> {
     /// The geometry.
     pub world: &'a World,
-    /// Who receives.
+    /// The receivers.
     pub receivers: Audience<'a>,
     /// The instances that send.
     pub senders: &'a [usize],
