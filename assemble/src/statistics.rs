@@ -1,20 +1,8 @@
 //! Sums over a whole scene: means, differences and row sums.
 
 use crate::exchange::system::InstanceSystem;
-use equilux_formats::{Element, Rgb};
+use equilux_formats::{Element, Rgb, RowSumDefect};
 use rayon::prelude::*;
-use serde::Serialize;
-
-/// Distance of row sums from one.
-#[derive(Debug, Clone, Default, Serialize)]
-pub struct Defect {
-    /// The worst row.
-    pub max: f64,
-    /// The mean over all rows.
-    pub mean: f64,
-    /// By how much the largest sum exceeds one; 0 if none does.
-    pub excess: f64,
-}
 
 /// The mean over the scene's area, channel by channel.
 pub fn mean_over_area(elements: &[Element], values: &[Rgb]) -> Rgb {
@@ -49,15 +37,9 @@ pub fn rms_over_mean(elements: &[Element], values: &[Rgb], unit: &[Rgb]) -> f64 
 }
 
 /// How far the rows of the whole matrix are from summing to one.
-pub fn row_sum_defect(systems: &[InstanceSystem]) -> Defect {
-    let over = systems
-        .par_iter()
-        .map(|system| row_sums(system).map(|sum| sum - 1.0).collect())
-        .collect::<Vec<Vec<f64>>>();
-    let over = over.concat();
-    let max = over.iter().fold(0.0, |max: f64, over| max.max(over.abs()));
-    let mean = over.iter().map(|over| over.abs()).sum::<f64>() / over.len().max(1) as f64;
-    Defect { max, mean, excess: over.into_iter().fold(0.0, f64::max) }
+pub fn row_sum_defect(systems: &[InstanceSystem]) -> RowSumDefect {
+    let sums = systems.par_iter().map(|system| row_sums(system).collect()).collect::<Vec<Vec<f64>>>();
+    RowSumDefect::of(&sums.concat())
 }
 
 /// Σ_j F_ij of every receiver of an instance, over all senders of the scene.

@@ -164,7 +164,7 @@ impl Store {
 
     /// A file's time is when it was last used: sweeps go by it.
     fn note_use(&self, path: PathBuf) {
-        // In a cache of somebody else's the times stay as they are, and nothing but the order of sweeps depends on them.
+        // Another user's cache may be read-only: its times stay as they are, and only the order of sweeps depends on them.
         let _ = File::options().append(true).open(&path).and_then(|f| f.set_modified(SystemTime::now()));
         self.log().used.insert(path);
     }

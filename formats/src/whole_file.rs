@@ -1,8 +1,7 @@
 //! Files that are there whole or not at all, even where a program is killed while it writes them.
 //!
-//! In goes a path and a closure that writes; out comes the file under its name, or the old one untouched. Until its last
-//! byte a file has a temporary name and is locked, so a temporary file that nobody has locked was left by a process that
-//! is gone, and may be removed.
+//! [`write_whole`] puts a file under its name or leaves the old one untouched. Until its last byte a file has a temporary
+//! name and is locked, so a temporary file without a lock was left by a process that is gone, and may be removed.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -46,7 +45,7 @@ pub(crate) fn remove_left_over(folder: &Path) {
         let temporary = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
         // Windows locks no file that is open for appending only.
         if temporary && let Ok(file) = File::options().read(true).append(true).open(entry.path()) {
-            // Litter that cannot be removed harms nobody.
+            // What cannot be removed does no harm.
             let _ = file.try_lock().map(|()| std::fs::remove_file(entry.path()));
         }
     }
@@ -60,9 +59,9 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
         let file = builder.tempfile_in(folder)?;
-        // Without locks nobody takes it for left over.
+        // Without locks no process takes it for left over.
         let _ = file.as_file().lock();
-        // It was not locked from its first moment: somebody may have removed it before it was.
+        // It was not locked from its first moment: another process may have removed it before.
         if file.path().exists() {
             return Ok(file);
         }

@@ -7,6 +7,7 @@ use equilux_assemble::report::Report;
 use equilux_assemble::run::job::Job;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::Division;
 use equilux_bake::treecode::Resolution;
@@ -88,8 +89,7 @@ fn level(rooms: usize) -> Vec<Node> {
     let rooms = furnished(rooms);
     let crates: Vec<Node> = (0..rooms.len())
         .map(|k| {
-            let floor =
-                rooms[k].surfaces[0].corners.as_slice().iter().fold(DVec3::INFINITY, |low, &p| low.min(p));
+            let floor = Aabb::around(rooms[k].surfaces[0].corners.as_slice()).low;
             let at = floor + dvec3(2.2, 0.3, 0.4 + 0.05 * (k % 8) as f64);
             let solid = solid(grey(0.6, 0.0), DVec3::splat(-0.25), dvec3(0.25, 0.25, 0.25));
             Node { at, ..Node::new(&format!("crate {k}"), solid) }

@@ -3,6 +3,7 @@
 
 use crate::exchange::active_rows::ActiveRows;
 use crate::exchange::system::InstanceSystem;
+use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -27,16 +28,11 @@ pub struct Group<'a> {
 pub fn groups<'a>(systems: &'a [InstanceSystem<'a>]) -> Vec<Group<'a>> {
     let senders = ranges(systems.iter().map(|system| system.clusters.nodes()));
     let sees: Vec<Vec<usize>> = systems.par_iter().map(|system| seen_by(system, &senders)).collect();
-    let mut group_of: Vec<usize> = (0..systems.len()).collect();
+    let mut sets = DisjointSets::new(systems.len());
     for (k, seen) in sees.iter().enumerate() {
-        for &l in seen {
-            let (a, b) = (group_of[k], group_of[l]);
-            group_of.iter_mut().filter(|group| **group == a.max(b)).for_each(|group| *group = a.min(b));
-        }
+        seen.iter().for_each(|&l| sets.join(k, l));
     }
-    let members = |group: usize| (0..systems.len()).filter(|&k| group_of[k] == group).collect::<Vec<_>>();
-    let heads = (0..systems.len()).filter(|&k| group_of[k] == k);
-    heads.map(|head| Group::of(systems, members(head), &senders, &sees)).collect()
+    sets.into_sets().into_iter().map(|members| Group::of(systems, members, &senders, &sees)).collect()
 }
 
 /// The instances that a node receives from.

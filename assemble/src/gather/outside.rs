@@ -5,6 +5,7 @@ use crate::gather::lights::{Lights, Sun};
 use crate::gather::sky::{Radiances, dome};
 use equilux_bake::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::world::World;
 use equilux_formats::{
     Corners, Element, Face, FaceId, Geometry, LightKind, LightUnits, MaterialId, PunctualLight,
@@ -43,13 +44,11 @@ pub fn lights(
 
 /// The middle of a world, and how far it reaches.
 pub fn frame(world: &World) -> (DVec3, f64) {
-    let corners = || world.faces.iter().flat_map(|face| &face.corners);
-    let low = corners().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = corners().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    if low.x > high.x {
+    let around = Aabb::around(world.faces.iter().flat_map(|face| &face.corners));
+    if around.is_empty() {
         (DVec3::ZERO, 1.0)
     } else {
-        ((low + high) / 2.0, (high - low).length().max(f64::MIN_POSITIVE))
+        (around.centre(), around.diagonal().max(f64::MIN_POSITIVE))
     }
 }
 

@@ -5,6 +5,7 @@ use crate::gather::Gather;
 use crate::gather::receiver::receiver;
 use crate::output_file;
 use crate::table::Table;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Element, Error, Result, Rgb};
@@ -113,10 +114,8 @@ pub fn light(
 /// The nearest point on an element that looks the place's way, and the element, for each place that has one.
 pub fn located(elements: &[Element], places: &[Place]) -> Vec<Option<(Element, usize)>> {
     let index = RayIndex::new(elements);
-    let corners = || elements.iter().flat_map(|element| element.corners.as_slice());
-    let low = corners().copied().fold(DVec3::INFINITY, DVec3::min);
-    let high = corners().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    let reach = NEAR * (high - low).length();
+    let around = Aabb::around(elements.iter().flat_map(|element| element.corners.as_slice()));
+    let reach = NEAR * around.diagonal();
     let locate = |place: &Place| {
         let start = place.point + place.normal * reach;
         let along = -2.0 * reach * place.normal;

@@ -13,6 +13,7 @@ use super::pack::Spot;
 use super::patch::Map;
 use super::side::{Side, sides};
 use super::texels::Texels;
+use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_formats::{Corners, Part};
 use glam::{DAffine3, DVec2, DVec3};
 
@@ -196,14 +197,7 @@ fn flat(places: &[DVec2]) -> Corners {
 
 /// Sides in groups that touch each other both on the part and in the layout, and are of one material.
 fn groups(sides: &[Side]) -> Vec<Vec<usize>> {
-    let mut group: Vec<usize> = (0..sides.len()).collect();
-    fn root(group: &mut [usize], mut side: usize) -> usize {
-        while group[side] != side {
-            group[side] = group[group[side]];
-            side = group[side];
-        }
-        side
-    }
+    let mut sets = DisjointSets::new(sides.len());
     for contact in opposed_contacts(sides) {
         let [a, b] = contact.sides;
         let together = contact.ends.iter().all(|&end| {
@@ -211,14 +205,10 @@ fn groups(sides: &[Side]) -> Vec<Vec<usize>> {
             p.zip(q).is_some_and(|(p, q)| (p - q).abs().max_element() <= STEP)
         });
         if together && sides[a].material == sides[b].material {
-            let (a, b) = (root(&mut group, a), root(&mut group, b));
-            group[a.max(b)] = a.min(b);
+            sets.join(a, b);
         }
     }
-    let mut groups: Vec<Vec<usize>> = vec![Vec::new(); sides.len()];
-    (0..sides.len()).for_each(|side| groups[root(&mut group, side)].push(side));
-    groups.retain(|group| !group.is_empty());
-    groups
+    sets.into_sets()
 }
 
 /// Where a point on a side's outline lies in the layout.

@@ -4,6 +4,7 @@
 //! have equal ends: a long one may meet several short ones.
 
 use super::side::Side;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::planes::FLATNESS;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_6;
@@ -86,9 +87,7 @@ fn contacts(sides: &[Side], tolerance: f64) -> Vec<Contact> {
 }
 
 fn longest_axis(sides: &[Side]) -> usize {
-    let corners = || sides.iter().flat_map(|side| side.corners.as_slice()).copied();
-    let extent =
-        corners().fold(DVec3::NEG_INFINITY, DVec3::max) - corners().fold(DVec3::INFINITY, DVec3::min);
+    let extent = Aabb::around(sides.iter().flat_map(|side| side.corners.as_slice())).size();
     (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0)
 }
 

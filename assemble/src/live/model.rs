@@ -4,9 +4,10 @@
 use crate::picture::camera::View;
 use crate::picture::exposure::Exposure;
 use crate::placed::Placed;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Camera, Element, Rgb};
-use glam::{DVec2, DVec3, UVec2, uvec2};
+use glam::{DVec2, UVec2, uvec2};
 use serde_json::json;
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -60,16 +61,14 @@ impl Model {
     /// element four corners as three f32, a triangle's last one twice, metres from the centre; then for each element its
     /// instance, u32. All little-endian.
     pub fn bytes(&self) -> Vec<u8> {
-        let corners = || self.elements.iter().flat_map(|element| element.corners.as_slice().iter().copied());
-        let low = corners().fold(DVec3::INFINITY, DVec3::min);
-        let high = corners().fold(DVec3::NEG_INFINITY, DVec3::max);
-        let centre = (low + high) / 2.0;
+        let around = Aabb::around(self.elements.iter().flat_map(|element| element.corners.as_slice()));
+        let centre = around.centre();
         let Seen { view, depth, .. } = self.seen();
         let head = json!({
             "run": self.run,
             "elements": self.elements.len(),
             "centre": centre.to_array(),
-            "radius": (high - low).length() / 2.0,
+            "radius": around.diagonal() / 2.0,
             "eye": (view.position - centre).to_array(),
             "target": (view.position - view.back * *depth - centre).to_array(),
             "up": view.up.to_array(),

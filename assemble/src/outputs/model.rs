@@ -5,6 +5,7 @@
 use crate::output_file;
 use crate::outputs::scene_light::SceneLight;
 use crate::picture::exposure::Exposure;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::{Element, Result, Rgb, glb};
 use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
@@ -94,8 +95,8 @@ struct Piece {
 
 impl Piece {
     fn new(elements: &[Element], radiosity: &[Rgb], exposure: Exposure) -> Self {
-        let corners = elements.iter().flat_map(|element| element.corners.as_slice());
-        let origin = corners.copied().fold(DVec3::INFINITY, DVec3::min).as_vec3();
+        let around = Aabb::around(elements.iter().flat_map(|element| element.corners.as_slice()));
+        let origin = around.low.as_vec3();
         let mut vertices = Vec::with_capacity(6 * elements.len());
         for (element, &b) in elements.iter().zip(radiosity) {
             let colour = DVec3::from(exposure.shown(b).0).as_vec3();

@@ -4,6 +4,8 @@
 //! Without a camera the scene is framed from outside. A surface is transparent from behind, so a closed room is seen
 //! through the backs of its near walls; of several directions the one that shows most of the surfaces' fronts is taken.
 
+use equilux_bake::geometry::aabb::Aabb;
+use equilux_bake::geometry::polygon::Polygon;
 use equilux_bake::visibility::rays::RayIndex;
 use equilux_formats::{Camera, Element};
 use glam::{DVec2, DVec3};
@@ -164,15 +166,8 @@ fn fit(points: impl Iterator<Item = (f64, f64)>, slope: f64) -> (f64, f64) {
 }
 
 /// The eight corners of the box around all elements.
-fn box_corners(elements: &[Element]) -> [DVec3; 8] {
-    let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    for &corner in elements.iter().flat_map(|element| element.corners.as_slice()) {
-        (low, high) = (low.min(corner), high.max(corner));
-    }
-    std::array::from_fn(|i| {
-        let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
-        DVec3::new(pick(0), pick(1), pick(2))
-    })
+fn box_corners(elements: &[Element]) -> Polygon {
+    Aabb::around(elements.iter().flat_map(|element| element.corners.as_slice())).corners()
 }
 
 /// Unit vectors towards the eyes that are tried: around the scene, level and from above. The front of a glTF scene,

@@ -15,7 +15,7 @@ pub(crate) mod unlit;
 use crate::exchange::energy::Energy;
 use crate::report::advice::Advice;
 use crate::report::seconds::Seconds;
-use crate::statistics::Defect;
+use equilux_formats::RowSumDefect;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -58,7 +58,7 @@ pub struct Report {
     /// which is exact by rows and not by columns.
     pub column_sums: [f64; 2],
     /// How far row sums are from one: zero in a closed scene.
-    pub row_sum_defect: Defect,
+    pub row_sum_defect: RowSumDefect,
     /// The comparison with the classic matrix, if asked for.
     pub verify: Option<Verify>,
     /// What became of each part and block and why, one sentence each.

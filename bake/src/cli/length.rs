@@ -1,4 +1,4 @@
-//! Lengths on the command line are metres, plain numbers. Somebody who writes `10cm` is told what to write instead.
+//! Lengths on the command line: plain numbers, metres. The error for `10cm` names what to write instead.
 
 /// Units of length: how many of them are how many metres.
 const UNITS: [(&str, f64, f64); 9] = [

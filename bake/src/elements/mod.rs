@@ -41,7 +41,7 @@ impl std::fmt::Display for ElementSize {
     }
 }
 
-/// About this many elements a scene gets when nobody says otherwise: seconds of work, and shadows one can see.
+/// About this many elements a scene has by default: seconds of work, and shadows one can see.
 const DEFAULT_ELEMENTS: f64 = 3000.0;
 
 /// A size that suits surfaces of this total area (m²): a round number that gives a few thousand elements.

@@ -1,8 +1,8 @@
 //! The light of one part: (I − ρF) B = q, three channels, by whichever local solver the part prefers.
 //!
-//! In comes the part's block F, its reflectance ρ and what every element sends before its own part reflects anything:
-//! q = E alone for the local equilibrium, q = E + ρ × (irradiance from other parts) during the exchange. Out comes
-//! the radiosity B. All four solvers stop at rounding, so the answer does not depend on the choice.
+//! F is the part's own block, ρ its reflectance, and q what every element sends before its own part reflects anything:
+//! q = E alone for the local equilibrium, q = E + ρ × (irradiance from other parts) during the exchange. B is the
+//! radiosity. All four solvers stop at rounding, so the answer does not depend on the choice.
 
 mod channels;
 mod columns;
@@ -21,11 +21,11 @@ use system::ROUNDING;
 pub use channels::largest;
 pub use system::{LocalSystem, apply};
 
-/// Up to this many elements the direct solver is chosen when nobody chooses. Its factors take n² numbers to keep and to
+/// Up to this many elements the direct solver is the default. Its factors take n² numbers to keep and to
 /// read, n³/3 to make; a handful of gathers over a compressed block is cheaper from a few hundred elements on.
 const DIRECT_UP_TO: usize = 256;
 
-/// The solver for a part of `elements` elements when nobody chooses.
+/// The default solver for a part of `elements` elements.
 pub fn default_solver(elements: usize) -> LocalSolver {
     if elements <= DIRECT_UP_TO { LocalSolver::Direct } else { LocalSolver::Iterative }
 }

@@ -1,5 +1,5 @@
-//! How a part answers light from outside. In go the part's equation and geometry; out come its radiosities under a few
-//! simple lights, which the exchange between parts uses as a coarse space.
+//! A part's radiosities under a few simple lights from outside, from its equation and geometry. The exchange between
+//! parts uses them as a coarse space.
 //!
 //! What a receiver does not see of its own part, 1 − Σ_j F_ij, may send light from outside. That light is taken as uniform,
 //! as linear in the receiver's place, and as linear in the direction it faces, seven lights in all. Whatever other parts

@@ -1,7 +1,6 @@
-//! Who may stand between two places: a hierarchy of boxes, and rays for pictures and cross-checks.
+//! A hierarchy of boxes around things.
 //!
-//! obvhs builds the hierarchies in f32; boxes are then taken anew in f64, and exact clipping decides everything. No
-//! type of obvhs leaves this module.
+//! obvhs builds it in f32; boxes are then taken anew in f64, and exact clipping decides everything.
 
 use super::aabb::Aabb;
 use glam::{DVec3, Vec3A};

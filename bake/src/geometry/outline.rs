@@ -55,8 +55,8 @@ impl Outline {
         }
     }
 
-    /// Of the piece of a solid where `height` (affine) is above zero. `faces` are the corners of its sides. Whoever looks
-    /// must be there too: the cut itself never looks.
+    /// Of the piece of a solid where `height` (affine) is above zero. `faces` are the corners of its sides. The
+    /// receiver must be above, too: the cut itself faces none.
     pub fn above<'a>(&self, faces: impl Iterator<Item = &'a [DVec3]>, height: impl Fn(DVec3) -> f64) -> Self {
         let reaches_up = |edge: &&Edge| edge.ends.iter().any(|&p| height(p) > 0.0);
         let mut edges: Vec<Edge> = self.edges.iter().filter(reaches_up).copied().collect();

@@ -1,5 +1,5 @@
 //! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `angular_diameter`,
-//! `local_solver`. Other keys are somebody else's and are left alone.
+//! `local_solver`. Other keys are ignored.
 
 use super::document::{Document, label};
 use super::repaint::{Changes, changes};

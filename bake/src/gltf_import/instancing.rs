@@ -1,4 +1,4 @@
-//! EXT_mesh_gpu_instancing: a node whose contents stand in many places. In go nodes, out come the places.
+//! EXT_mesh_gpu_instancing: the places of a node whose contents stand in many.
 //!
 //! Accessors give TRANSLATION, ROTATION and SCALE of each copy, in the node's coordinates; what is not given is none, a turn
 //! by nothing, and one. The copies take the place of the node's own mesh; what hangs below the node stands once.

@@ -1,5 +1,5 @@
-//! glTF → [`Scene`]. All that is untidy about glTF ends here: in goes a `.gltf` or `.glb` file with the files it refers
-//! to, out come parts of clean surfaces, their instances, cameras and lights, and notes on what was left out.
+//! glTF → [`Scene`]: a `.gltf` or `.glb` file, with the files it refers to, becomes parts of clean surfaces, their
+//! instances, cameras and lights, and notes on what was left out. All that is untidy about glTF ends here.
 //!
 //! - A part is a root node with all below it. A lone root that only wraps others is looked through. Roots with equal
 //!   contents are instances of one part.

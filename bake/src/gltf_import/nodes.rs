@@ -1,5 +1,5 @@
-//! The node hierarchy, flattened: in goes a document, out come its nodes in the order of the file, each with where it
-//! stands and what its extras say. Nothing here recurses, so a chain of a million nodes is read like any other file.
+//! Flattens a document's node hierarchy: its nodes in the order of the file, each with its placement and its extras.
+//! Nothing here recurses, so a chain of a million nodes is read like any other file.
 
 use super::document::{Document, label};
 use super::extras::Extras;

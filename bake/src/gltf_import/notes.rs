@@ -1,5 +1,5 @@
-//! What the user should know about the import although it went on: in go remarks about meshes, materials, nodes and
-//! files, out come sentences, one for each remark however often it was made.
+//! Notes about an import that do not stop it. Remarks about meshes, materials, nodes and files become sentences, one for
+//! each remark however often it was made.
 
 use std::collections::HashMap;
 

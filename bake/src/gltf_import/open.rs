@@ -27,7 +27,7 @@ const SUPPORTED: [&str; 8] = [
     "KHR_texture_transform",
 ];
 
-/// Reads `path`, its buffers and its images. What the file holds but nobody here uses is noted.
+/// Reads `path`, its buffers and its images. What the file holds but the importer does not use is noted.
 pub(super) fn read(files: &mut Files, path: &Path, notes: &mut Notes) -> Result<Document> {
     let bytes = files.read(path)?;
     let Chunks { json, binary } = split(&bytes).map_err(|why| not_gltf(path, why))?;

@@ -1,5 +1,5 @@
-//! Files that stand for a part: `"part": "file.glb"` in a node's extras. In go references, out come drafts that merge
-//! all that a file holds, and what the files it refers to hold in turn. Each file is read once.
+//! Files that stand for a part: `"part": "file.glb"` in a node's extras. Each becomes a draft that merges all that the
+//! file holds, and what the files it refers to hold in turn. Each file is read once.
 
 use super::document::Document;
 use super::drafts::{Draft, Settings};

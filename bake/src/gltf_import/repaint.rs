@@ -1,5 +1,5 @@
-//! What authors change about the materials below a node: `emission_scale`, and `materials` by name. In go the nodes' extras
-//! and paints as files have them; out come paints as they look there, and notes on names that nothing has.
+//! Changes of the materials below a node by its extras: `emission_scale`, and `materials` by name. Turns paints as files
+//! have them into paints as they look there, and notes names that no material has.
 
 use super::materials::Paint;
 use super::notes::Notes;

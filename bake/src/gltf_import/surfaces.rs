@@ -1,6 +1,5 @@
 //! Triangles → clean surfaces: faces without area and repeated faces go, two triangles that are the halves of a
-//! quad become one, unless they lie otherwise in a lightmap. In go the triangles of one primitive, out come its surfaces
-//! in the same order.
+//! quad become one, unless they lie otherwise in a lightmap. The surfaces of a primitive keep the order of its triangles.
 
 use super::triangles::Triangles;
 use crate::geometry::point_key::{PointKey, point_key};

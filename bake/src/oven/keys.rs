@@ -1,10 +1,9 @@
-//! The keys of everything that a run on a scene asks the cache for, without computing any of it: so it can be told what in a
-//! cache is needed.
+//! The keys of everything that a run on a scene looks up in the cache, computed without any of it: they decide what in a
+//! cache is still needed.
 //!
-//! In go prepared parts in their places; out come keys: of each part and its light, and for each instance of the block that
-//! couples it with all others, of that with the sky, of its own block with what stands inside it, and of its light with that. Not every instance
-//! has all of these: whether something stands inside one does not matter here, as a key under which nothing lies
-//! harms nobody.
+//! There is a key for each part and for its light, and for each instance a key for the block that couples it with all
+//! others, for that with the sky, for its own block with what stands inside it, and for its light with that. Not every
+//! instance has all of these; a key without a file does no harm.
 
 use crate::elements::repainted;
 use crate::geometry::rounded_placement::RoundedPlacement;

@@ -72,7 +72,7 @@ pub struct PreparedPart {
     pub element_size: ElementSize,
     /// The metres that one unit of its coordinates makes there.
     pub unit: f64,
-    /// Who solves its equilibrium.
+    /// The solver of its local equilibrium.
     pub solver: LocalSolver,
 }
 

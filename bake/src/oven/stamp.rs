@@ -1,4 +1,4 @@
-//! Files that are only there for a build tool to watch. In goes a path; afterwards a file lies there that is as new as now.
+//! Files for build tools to watch: created empty, or given the present time, when a run succeeds.
 
 use equilux_formats::{Error, Result, check_writable_beside};
 use std::fs::File;

@@ -80,7 +80,7 @@ impl<'a> RayIndex<'a> {
         hits.into_inner()
     }
 
-    /// Whether nothing stands between two points, the ends themselves (within [`SAME_HIT`] of the distance) left out.
+    /// Whether nothing stands between two points, the ends themselves (within 1e-9 of the distance) left out.
     pub fn sees(&self, from: DVec3, to: DVec3) -> bool {
         let direction = to - from;
         let start = from + direction * SAME_HIT;

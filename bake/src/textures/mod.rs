@@ -1,5 +1,4 @@
-//! What textures and vertex colours make of elements: in go elements and the textured triangles of their surfaces, out come
-//! average colours over each element, in linear light.
+//! The average colour of each element, in linear light, from textures and vertex colours of the triangles of its surface.
 //!
 //! Elements find the triangles they lie in by place and material. So elements, and with them form factors, are the same
 //! whatever is painted on them.

@@ -1,4 +1,4 @@
-//! Two-sided closed shells in which nothing shines: their inner sides are dark and nobody sees them, so they get no
+//! Two-sided closed shells in which nothing shines: their inner sides are dark and never seen, so they have no
 //! elements.
 //!
 //! Modelling programs make every material two-sided unless told otherwise. Half of the elements of a crate then lie inside

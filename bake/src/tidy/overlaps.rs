@@ -90,7 +90,7 @@ fn cut_within(part: &mut Part) -> usize {
 }
 
 /// How many of the surfaces with `covers` are worth a word. A solid that stands against a two-sided sheet, such as a crate on a
-/// floor, has a face in the plane of the sheet's other side; nobody looks there.
+/// floor, has a face in the plane of the sheet's other side; it is never seen.
 fn noticed(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>) -> usize {
     if covers.is_empty() {
         return 0;

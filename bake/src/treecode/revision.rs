@@ -1,5 +1,5 @@
-//! What a change of the scene can touch of a block. In go the block as it was and what appeared or disappeared since; out
-//! comes, for each group of receivers, which of its entries stay and which senders have to be looked for again.
+//! Brings a block up to date after a change of the scene. From what appeared or disappeared follows, for each group of
+//! receivers, which of its entries stay and which senders are searched again.
 //!
 //! Light between receivers and a sender passes through their shaft, so an entry whose shaft misses everything that changed
 //! stays as it is. Senders that were hidden have no entry and may be seen now: so it is the two hierarchies that are walked

@@ -208,7 +208,7 @@ impl<'a> Search<'a> {
     }
 
     /// What an entry for a cluster may err by: its form factor, at most, times its size over its distance, times how much
-    /// the radiosity varies within the cluster, which nobody knows here. The variation is larger where something stands
+    /// the radiosity varies within the cluster, which is unknown here. The variation is larger where something stands
     /// between, because what is hidden often has other light than what is not. Infinite if it can have no entry.
     fn error(&self, sender: &Node) -> f64 {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {

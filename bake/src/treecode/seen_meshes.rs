@@ -1,4 +1,4 @@
-//! The meshes before a sender as each receiver of a cluster sees them: made when first asked for, and kept for all the
+//! The meshes before a sender as each receiver of a cluster sees them: made when first needed, and kept for all the
 //! senders of the cluster.
 
 use super::pieces::Pieces;
@@ -10,10 +10,10 @@ use equilux_formats::FaceId;
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// All meshes, as far as they were asked for.
+/// All meshes, as far as they were needed.
 pub struct SeenMeshes<'a> {
     world: &'a World,
-    /// By occluder and receiver; an occluder that nobody asked for has no receivers.
+    /// By occluder and receiver; an occluder that was not needed yet has no receivers.
     known: Vec<Vec<Option<Box<SeenMesh<'a>>>>>,
     /// The occluders before the sender.
     before: Vec<u32>,
@@ -27,7 +27,7 @@ pub struct Curtains<'s> {
 }
 
 impl<'a> SeenMeshes<'a> {
-    /// Seen by nobody.
+    /// None is known yet.
     pub fn new(world: &'a World) -> Self {
         Self { world, known: vec![], before: vec![] }
     }

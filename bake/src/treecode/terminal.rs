@@ -27,7 +27,7 @@ pub struct Evaluator<'a> {
     world: &'a World,
     /// Pyramids of whole occluders.
     whole: Cones,
-    /// Those of each occluder, once somebody asked.
+    /// Those of each occluder, once they were needed.
     known: Vec<Option<Cone>>,
     /// Pyramids of what one sender's plane leaves of occluders.
     pieces: Cones,

@@ -1,7 +1,7 @@
-//! Rows times what they see: the sum that every round of an exchange consists of. In go the numbers of rows, one row after the
-//! other, and the light of what each column names; out comes one sum a row.
+//! Rows of form factors times the light of their columns, one sum a row: what every round of an exchange consists of. Rows
+//! lie one after the other.
 
-use super::Rgb;
+use crate::rgb::Rgb;
 
 /// Rows whose sums are added up side by side: as many chains of additions as hide their latency.
 const ABREAST: usize = 4;

@@ -80,7 +80,7 @@ impl Store {
             let found = format!("cannot be listed ({error})");
             Error::new(&self.folder, found, "a folder that can be read", "check its permissions")
         })?;
-        // What cannot be looked at was just removed by somebody else.
+        // What cannot be looked at was just removed by another process.
         Ok(entries.flatten().filter_map(|entry| Cached::at(entry.path())).collect())
     }
 }

@@ -1,7 +1,7 @@
 //! Taking turns: of the processes that share a cache, one at a time makes what belongs under a key.
 //!
 //! The locks are the operating system's, so they end with the process, however that ends. They are on a fixed set of
-//! empty files that are never removed: removing a file that somebody waits for would let two go on at once. Keys share
+//! empty files that are never removed: removing a file that a process waits for would let two go on at once. Keys share
 //! them by their first byte, so a process must have one turn at a time, lest two wait for each other for ever.
 
 use super::Store;
@@ -19,7 +19,7 @@ pub struct Turn {
 
 impl Store {
     /// The turn to make what belongs under this key, unless another process has it. Where the file system has no locks,
-    /// everybody has a turn always: then a thing may be made twice, which costs time and nothing else.
+    /// every process has a turn always: then a thing may be made twice, which costs time and nothing else.
     pub fn try_turn(&self, key: &Key) -> Option<Turn> {
         let Ok(file) = self.lock_file(key) else { return Some(Turn { _file: None }) };
         match file.try_lock() {
