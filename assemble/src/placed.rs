@@ -1,12 +1,13 @@
 //! Baked parts placed in a scene: one world of all elements, and what each instance needs to take part.
 
-use equilux_bake::cached::Origin;
 use equilux_bake::elements::repainted;
+use equilux_bake::oven::cached::Origin;
 use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::world::World;
 use equilux_formats::{Instance, LocalEquilibrium, Optics, Result};
 
 /// The parts of a scene in their places.
+#[derive(Debug)]
 pub struct Placed {
     /// All elements and faces in scene coordinates, instance after instance.
     pub world: World,
@@ -19,6 +20,7 @@ pub struct Placed {
 }
 
 /// The own light of an instance.
+#[derive(Debug)]
 pub struct Relit {
     /// The light, and what solves it again.
     pub local: LocalEquilibrium,

@@ -6,6 +6,7 @@ use equilux_formats::{Error, Result, Rgb};
 use std::path::Path;
 
 /// A table that was read. Columns that nobody asks for may hold anything.
+#[derive(Debug)]
 pub struct Table<'a> {
     file: &'a Path,
     /// What a person is told that the file should hold, and what to do.

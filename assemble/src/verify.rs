@@ -9,6 +9,7 @@ use equilux_formats::{ClusterTree, Optics, Result, Rgb, Rows};
 use std::time::{Duration, Instant};
 
 /// The whole-scene answer and what it took.
+#[derive(Debug)]
 pub struct Classic {
     /// Radiosity of all elements.
     pub radiosity: Vec<Rgb>,

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Progress of long work, and the request to stop it.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Monitor {
     work: Mutex<Work>,
     done: AtomicU64,
@@ -25,7 +25,7 @@ pub struct Step {
 }
 
 /// The work of the whole run, in rows.
-#[derive(Default)]
+#[derive(Debug, Default)]
 struct Work {
     step: Step,
     /// The work of the current step.

@@ -9,7 +9,7 @@ use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
 use equilux_formats::Rgb;
 use equilux_tests::levels::furnished;

@@ -16,7 +16,7 @@ use equilux_assemble::run::job::Job;
 use equilux_assemble::run::run_observed;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
 use equilux_formats::Rgb;
 use equilux_tests::levels::furnished;

@@ -4,7 +4,7 @@
 use equilux_assemble::equation::coupling::Coupled;
 use equilux_assemble::placed::Placed;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::{Rgb, Rows};
 use equilux_tests::lit::coupled;

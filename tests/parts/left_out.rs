@@ -4,7 +4,7 @@ use equilux_assemble::exchange::settings::Goal;
 use equilux_assemble::exchange::settings::Method;
 use equilux_assemble::report::Report;
 use equilux_assemble::report::summary::{BLACK_ROWS, DARK_SOLVES, UNSEEN};
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::{Material, Rgb};
 use equilux_tests::model::Node;
 use equilux_tests::rooms::{half, lamp, paint};

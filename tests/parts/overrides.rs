@@ -2,7 +2,7 @@
 
 use equilux_assemble::report::Report;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::{LocalSolver, Material, Rgb};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{lamp, paint};

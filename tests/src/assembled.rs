@@ -16,6 +16,7 @@ use equilux_formats::{Geometry, LocalEquilibrium, LocalSolver, Optics, Rgb, Rows
 use glam::DAffine3;
 
 /// Parts, their blocks, and their light on their own.
+#[derive(Debug)]
 pub struct Assembled {
     /// The parts' elements, each in its place.
     pub geometries: Vec<Geometry>,

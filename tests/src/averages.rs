@@ -9,7 +9,7 @@ use equilux_assemble::gather::lights::Lights;
 use equilux_assemble::gather::piece::{Piece, centre};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Instance, Rgb};
@@ -17,6 +17,7 @@ use glam::DVec3;
 use std::path::Path;
 
 /// Texels as large as the truth's elements against the truth.
+#[derive(Debug)]
 pub struct Compared {
     /// One a channel.
     pub errors: [Errors; 3],

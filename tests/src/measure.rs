@@ -5,14 +5,15 @@ use equilux_assemble::classic::rays::row;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::equilibrium::apply;
 use equilux_bake::monitor::Monitor;
+use equilux_bake::rays::RayIndex;
 use equilux_bake::treecode::{Audience, Request, Resolution, block};
-use equilux_bake::visibility::rays::RayIndex;
 use equilux_bake::world::World;
 use equilux_formats::{Geometry, Optics, Part, Rgb, Rows};
 use glam::DAffine3;
 use std::time::{Duration, Instant};
 
 /// A furnished level, every room a part.
+#[derive(Debug)]
 pub struct Level {
     /// The rooms' elements.
     pub geometries: Vec<Geometry>,
@@ -23,6 +24,7 @@ pub struct Level {
 }
 
 /// All rows of a world, one block an instance.
+#[derive(Debug)]
 pub struct Measured {
     /// The blocks.
     pub blocks: Vec<Rows>,
@@ -108,6 +110,7 @@ impl Level {
 
 /// Rows found by casting rays, the usual way: the unoccluded form factor of each pair times the share of `rays` points on
 /// the sender that the receiver sees. Dense; for comparison.
+#[derive(Debug)]
 pub struct Cast {
     /// The receivers.
     pub receivers: Vec<usize>,

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 /// The numbers of a table by column.
+#[derive(Debug)]
 pub struct Table {
     columns: HashMap<String, Vec<f64>>,
 }

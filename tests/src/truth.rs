@@ -58,6 +58,7 @@ pub fn places(table: &Table) -> Vec<(DVec3, DVec3)> {
 }
 
 /// Root of the mean square over all area, in units of the mean.
+#[derive(Debug)]
 pub struct Errors {
     /// Of what we found against the truth.
     pub total: f64,

@@ -9,7 +9,7 @@ use equilux_assemble::run::job::Job;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,9 +20,11 @@ use tempfile::TempDir;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The folder.
+#[derive(Debug)]
 pub struct Workshop(TempDir);
 
 /// How a program ended.
+#[derive(Debug)]
 pub struct Ended {
     /// Its exit code; none if a signal ended it.
     pub code: Option<i32>,

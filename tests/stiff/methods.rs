@@ -5,7 +5,7 @@ use equilux_assemble::exchange::exchange;
 use equilux_assemble::exchange::listener::Unobserved;
 use equilux_assemble::exchange::settings::Goal;
 use equilux_assemble::exchange::settings::Method;
-use equilux_bake::bisect::bisect;
+use equilux_bake::elements::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::EXACT;

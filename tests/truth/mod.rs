@@ -12,7 +12,7 @@ use equilux_assemble::run::job::Job;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, gathered, places};

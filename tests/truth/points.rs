@@ -3,7 +3,7 @@
 use equilux_assemble::outputs::requests::Pictures;
 use equilux_assemble::run::run;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::Resolution;
 use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, Found};

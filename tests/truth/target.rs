@@ -21,7 +21,7 @@ fn an_error_that_is_asked_for_is_met() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes").join(name);
         let workshop = Workshop::new();
         for &target in targets {
-            let mut job = workshop.job(equilux_bake::prepare::Division::Authored);
+            let mut job = workshop.job(equilux_bake::oven::prepare::Division::Authored);
             job.scene = folder.join(name).with_extension("glb");
             job.outputs.pictures = Pictures::None;
             job.outputs.points = Some(folder.join("truth.csv"));

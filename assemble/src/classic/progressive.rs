@@ -45,6 +45,7 @@ pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> 
     Ok(Solved { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
 }
 
+#[derive(Debug)]
 struct Light<'a> {
     world: &'a World,
     optics: &'a Optics,

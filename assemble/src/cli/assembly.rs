@@ -22,8 +22,7 @@ pub struct Assembly {
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub options: SceneOptions,
-    /// Folder for the outputs; they go to DIR/<scene>/: pictures of the first eight rounds, of rounds
-    /// 16, 32, 64 and so on, and of the last, some of them side by side; the result as a picture and as a model
+    /// Folder for the outputs; they go to DIR/SCENE/: the result as a picture and as a model, lightmaps and tables
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// How parts exchange light

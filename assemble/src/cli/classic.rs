@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Progressive refinement ends when this share of the emitted light is left unshot
     #[arg(long, value_name = "SHARE", default_value = "0.01", value_parser = share)]
     unshot: f64,
-    /// Folder for the outputs; they go to DIR/<scene>/
+    /// Folder for the outputs; they go to DIR/SCENE/
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Gather light at the points in this table, as without `classic`

@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Time for all runs, seconds; settings that would take longer are skipped
     #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = budget)]
     budget: Duration,
-    /// Folder for the outputs; they go to DIR/<scene>/sweep/: report.html, sweep.csv, sweep.json, and the result of each run
+    /// Folder for the outputs; they go to DIR/SCENE/sweep/: report.html, sweep.csv, sweep.json, and the result of each run
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Print one JSON object on stdout and nothing else

@@ -6,9 +6,9 @@
 use crate::equation::earlier::Older;
 use crate::equation::intruders::intruders;
 use crate::placed::Placed;
-use equilux_bake::cached::{Made, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
 use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::cached::{Made, Origin, cached, cached_or_revised, foreseen};
+use equilux_bake::oven::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
@@ -19,6 +19,7 @@ use std::path::Path;
 use std::time::Duration;
 
 /// What an instance exchanges light through.
+#[derive(Debug)]
 pub struct Coupled {
     /// F_kl for all l ≠ k, `elements of k × all nodes of the scene`.
     pub coupling: Rows,
@@ -35,6 +36,7 @@ pub struct Coupled {
 }
 
 /// A self block that is not the baked one.
+#[derive(Debug)]
 pub struct Corrected {
     /// F_kk inside the scene.
     pub self_block: Rows,
@@ -53,6 +55,7 @@ pub struct Corrected {
 }
 
 /// Where the blocks of an instance would come from.
+#[derive(Debug)]
 pub struct Foreseen {
     /// The instances that stand inside.
     pub intruders: Vec<usize>,
@@ -78,6 +81,7 @@ impl Coupled {
 const TWINS: usize = 8;
 
 /// Computes what couples the instances of a scene, or takes it from the cache.
+#[derive(Debug)]
 pub struct Coupler<'a> {
     /// The scene.
     pub placed: &'a Placed,

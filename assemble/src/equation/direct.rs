@@ -8,13 +8,14 @@ use crate::gather::faces::Plane;
 use crate::gather::lights::Lights;
 use crate::gather::piece::Piece;
 use crate::placed::Placed;
-use equilux_bake::cached::cached;
 use equilux_bake::equilibrium::apply;
+use equilux_bake::oven::cached::cached;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Element, Optics, Result, Rgb, Rows};
 
 /// What lights send to elements.
+#[derive(Debug)]
 pub struct Direct {
     /// D, W/m², one vector an instance.
     pub irradiance: Vec<Vec<Rgb>>,

@@ -4,6 +4,7 @@ use crate::gather::sky::{Radiances, Sky};
 use equilux_formats::{LightUnits, Result};
 
 /// The sky, and the units of the file's lights.
+#[derive(Debug)]
 pub struct Environment {
     /// The units of the intensities of the file's lights; none for those that each file suggests.
     pub light_units: Option<LightUnits>,

@@ -4,7 +4,7 @@
 //! the convex hull, so an intruder is never missed; the cells of a bisection touch it only from outside.
 
 use equilux_bake::form_factor::polygon::{Side, clip};
-use equilux_bake::planes::FLATNESS;
+use equilux_bake::geometry::planes::FLATNESS;
 use equilux_formats::{Face, Geometry, Instance};
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -24,6 +24,7 @@ pub fn intruders<'a>(
 }
 
 /// A convex region around a part, in the part's coordinates.
+#[derive(Debug)]
 pub struct Hull {
     slabs: Vec<(DVec3, f64, f64)>,
 }

@@ -22,12 +22,13 @@ use crate::gather::lights::Lights;
 use crate::gather::outside::lights;
 use crate::placed::Placed;
 use equilux_bake::equilibrium::LocalSystem;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_bake::oven::{Baked, Oven};
-use equilux_bake::prepare::Prepared;
 use equilux_bake::treecode::Resolution;
 use equilux_formats::{Optics, Result, Rgb, Scene};
 
 /// All that the exchange needs to know of a scene.
+#[derive(Debug)]
 pub struct Equation {
     /// The parts in their places.
     pub placed: Placed,

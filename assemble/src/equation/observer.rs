@@ -5,7 +5,7 @@ use crate::exchange::listener::{Listener, Unobserved};
 use crate::exchange::outcome::Outcome;
 use crate::placed::Placed;
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::Prepared;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::{Camera, Optics, Rgb, Scene};
 
 /// Receives the results of a run as they come. The run waits for each call: copy what is needed, and return.

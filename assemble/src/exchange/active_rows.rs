@@ -7,6 +7,7 @@ use equilux_formats::{Rgb, Rows};
 use rayon::prelude::*;
 
 /// The groups of rows of an instance's two blocks that take part.
+#[derive(Debug)]
 pub struct ActiveRows {
     own: Vec<bool>,
     coupling: Vec<bool>,

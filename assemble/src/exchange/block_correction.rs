@@ -32,6 +32,7 @@ struct Solved {
 }
 
 /// The light of a sweep on its way.
+#[derive(Debug)]
 struct Light {
     /// The newest corrections, of all senders of the scene.
     all: Vec<Rgb>,

@@ -21,6 +21,7 @@ const ANSWERS: usize = 7;
 const FEW: f64 = 16.0;
 
 /// The coarse equation of a group, factored.
+#[derive(Debug)]
 pub struct Coarse<'a> {
     group: &'a Group<'a>,
     /// Each member's unknowns.

@@ -22,6 +22,7 @@ pub struct Energy {
 }
 
 /// The share of what each element sends that arrives in the group.
+#[derive(Debug)]
 pub struct Columns(Vec<f64>);
 
 impl Columns {

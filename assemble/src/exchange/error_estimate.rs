@@ -7,7 +7,7 @@ use equilux_formats::Rgb;
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// What is known of a group's light at some time.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct ErrorEstimate {
     /// Largest residual, W/m².
     pub residual: Rgb,

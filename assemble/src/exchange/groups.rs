@@ -10,6 +10,7 @@ use std::ops::Range;
 
 /// Parts that exchange light with each other and with no other part. Vectors of a group hold its members' elements, one
 /// member after the other.
+#[derive(Debug)]
 pub struct Group<'a> {
     systems: &'a [InstanceSystem<'a>],
     /// The instances, in order.

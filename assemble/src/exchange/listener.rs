@@ -15,6 +15,7 @@ pub trait Listener: Sync {
 }
 
 /// A round of one group of instances.
+#[derive(Debug)]
 pub struct FinishedRound<'a> {
     /// The group's instances, in order.
     pub instances: &'a [usize],
@@ -31,6 +32,7 @@ pub struct FinishedRound<'a> {
 }
 
 /// Ignores every call.
+#[derive(Debug)]
 pub struct Unobserved;
 
 impl Listener for Unobserved {}

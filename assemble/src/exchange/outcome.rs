@@ -7,6 +7,7 @@ use equilux_formats::Rgb;
 use std::time::Duration;
 
 /// The light in the end.
+#[derive(Debug)]
 pub struct Outcome {
     /// Radiosity of all elements.
     pub radiosity: Vec<Rgb>,

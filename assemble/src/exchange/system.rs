@@ -4,6 +4,7 @@ use equilux_bake::equilibrium::LocalSystem;
 use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
 
 /// One instance's share of the equation.
+#[derive(Debug)]
 pub struct InstanceSystem<'a> {
     /// Reflectance and emission in this place.
     pub optics: Optics,

@@ -5,6 +5,7 @@ use equilux_formats::{Face, FaceId};
 use glam::DVec3;
 
 /// The faces of a world.
+#[derive(Debug)]
 pub struct Faces {
     faces: Vec<Face>,
     /// Largest coordinate, metres: roundings are of its size.
@@ -12,6 +13,7 @@ pub struct Faces {
 }
 
 /// The faces that lie in one plane.
+#[derive(Debug)]
 pub struct Plane<'a> {
     faces: Vec<(FaceId, &'a Face)>,
 }

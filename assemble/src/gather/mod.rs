@@ -38,6 +38,7 @@ use lights::Lights;
 const IN_PLANE: f64 = 1e-6;
 
 /// A scene in equilibrium, ready to be asked.
+#[derive(Debug)]
 pub struct Gather {
     world: World,
     faces: Faces,

@@ -3,7 +3,7 @@
 use crate::gather::lamps::Lamp;
 use crate::gather::lights::{Lights, Sun};
 use crate::gather::sky::{Radiances, dome};
-use equilux_bake::clusters::hierarchy;
+use equilux_bake::elements::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::world::World;

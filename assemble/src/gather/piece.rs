@@ -5,6 +5,7 @@ use equilux_bake::form_factor::polygon::{Polygon, part};
 use glam::DVec3;
 
 /// A planar convex piece of surface, seen from its lit side.
+#[derive(Debug)]
 pub struct Piece<'a> {
     /// Corners, counter-clockwise, metres.
     pub corners: &'a [DVec3],

@@ -2,8 +2,8 @@
 //!
 //! What a sky sends changes no visibility: its cells stay, and each sends what the sky has there on average.
 
-use equilux_bake::clusters::hierarchy;
-use equilux_bake::keys::SKY_CELLS;
+use equilux_bake::elements::clusters::hierarchy;
+use equilux_bake::oven::keys::SKY_CELLS;
 use equilux_formats::{Corners, Element, Error, Face, FaceId, Geometry, MaterialId, Result, Rgb};
 use glam::DVec3;
 use image::codecs::hdr::HdrDecoder;
@@ -50,6 +50,7 @@ pub fn dome(centre: DVec3, size: f64) -> Geometry {
 }
 
 /// The radiances of a sky, in memory.
+#[derive(Debug)]
 pub enum Radiances {
     /// The same everywhere.
     Uniform(Rgb),
@@ -97,6 +98,7 @@ fn open(file: &Path) -> ImageResult<DynamicImage> {
 }
 
 /// Radiances by direction.
+#[derive(Debug)]
 pub struct Picture {
     width: usize,
     height: usize,

@@ -42,6 +42,7 @@ pub struct Authored {
 }
 
 /// Charts on sheets.
+#[derive(Debug)]
 pub struct Sheets {
     /// The grid of each chart.
     pub grids: Vec<Grid>,

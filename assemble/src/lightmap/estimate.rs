@@ -14,6 +14,7 @@ const DEFAULT_TEXELS: f64 = 1024.0 * 1024.0;
 const FILLED: f64 = 0.85;
 
 /// A part's charts, as its author or else we cut them.
+#[derive(Debug)]
 pub struct PartCharts {
     /// The author's.
     pub authored: Option<Authored>,
@@ -38,6 +39,7 @@ impl PartCharts {
 
 /// What charts take of an atlas: with texels of t metres Σ (w/t + m)(h/t + m), where m is what a chart takes beyond its
 /// extent, a polynomial in 1/t.
+#[derive(Debug)]
 pub struct Estimate {
     coefficients: [f64; 3],
 }

@@ -16,6 +16,7 @@ const OFF: f64 = 0.01;
 const TURNED: f64 = 0.01;
 
 /// Gives texels their light.
+#[derive(Debug)]
 pub struct TexelLight<'a> {
     gather: &'a Gather,
     /// The scene's mean irradiance, W/m².

@@ -55,6 +55,7 @@ pub struct LightmapOptions {
 }
 
 /// A scene with light on its surfaces.
+#[derive(Debug)]
 pub struct Lightmap<'a> {
     /// The scene.
     pub scene: &'a Scene,

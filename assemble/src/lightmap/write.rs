@@ -15,6 +15,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// What was written.
+#[derive(Debug)]
 pub struct Saved {
     /// The files.
     pub paths: Vec<PathBuf>,

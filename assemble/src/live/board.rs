@@ -14,7 +14,7 @@ use crate::placed::Placed;
 use crate::report::Report;
 use crate::report::seconds::{Seconds, rounds, seconds};
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::Prepared;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::{Camera, Optics, Rgb, Scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -25,6 +25,7 @@ use tokio::sync::watch;
 pub const PACE: Duration = Duration::from_millis(100);
 
 /// What a run has published.
+#[derive(Debug)]
 pub struct Board {
     state: Mutex<State>,
     /// Tells that there is something new to fetch. Whoever listens is a viewer.
@@ -33,7 +34,7 @@ pub struct Board {
 }
 
 /// All that viewers may see.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct State {
     /// In words.
     pub status: Status,

@@ -26,7 +26,7 @@ pub enum Field {
 pub const UNKNOWN: f32 = f32::MIN;
 
 /// The light of a round.
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Light {
     /// Where it is seen.
     pub model: Arc<Model>,

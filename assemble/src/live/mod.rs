@@ -20,6 +20,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A page that is being served.
+#[derive(Debug)]
 pub struct Live {
     board: Arc<Board>,
     monitor: Arc<Monitor>,

@@ -5,7 +5,7 @@ use crate::picture::camera::View;
 use crate::picture::exposure::Exposure;
 use crate::placed::Placed;
 use equilux_bake::geometry::aabb::Aabb;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Camera, Element, Rgb};
 use glam::{DVec2, UVec2, uvec2};
 use serde_json::json;
@@ -16,6 +16,7 @@ use std::sync::OnceLock;
 const RAYS: UVec2 = uvec2(96, 72);
 
 /// Placed elements.
+#[derive(Debug)]
 pub struct Model {
     /// The run that placed them.
     pub run: u32,
@@ -27,6 +28,7 @@ pub struct Model {
 }
 
 /// What the eye of the pictures sees.
+#[derive(Debug)]
 struct Seen {
     view: View,
     /// How far away that is which the middle of the picture shows, metres.

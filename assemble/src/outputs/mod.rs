@@ -21,7 +21,7 @@ use crate::solve::Solved;
 use crate::statistics::mean_over_area;
 use crate::verify::Classic;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Error, Result, Rgb, Scene, unless_stopped};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -45,6 +45,7 @@ const CLASSIC: &str = "classic.png";
 const FIRST_ROUNDS: usize = 3;
 
 /// What there is to show.
+#[derive(Debug)]
 pub struct Light<'a> {
     /// The light.
     pub solved: &'a Solved,
@@ -59,6 +60,7 @@ pub struct Light<'a> {
 }
 
 /// What was written.
+#[derive(Debug)]
 pub struct Written {
     /// The paths, for a person.
     pub paths: Vec<String>,

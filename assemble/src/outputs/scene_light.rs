@@ -5,7 +5,7 @@ use equilux_formats::Rgb;
 use glam::DVec3;
 
 /// Placed elements, the light on them, and the names to tell about them. Per-element slices follow `world.elements`.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct SceneLight<'a> {
     /// The placed elements, in scene coordinates, metres.
     pub world: &'a World,

@@ -2,7 +2,7 @@
 //! traced once and then painted as often as the light changes.
 
 use crate::picture::camera::View;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::Rgb;
 use glam::DVec2;
 use image::RgbImage;
@@ -13,6 +13,7 @@ const SAMPLES: [DVec2; 4] =
     [DVec2::new(0.375, 0.125), DVec2::new(0.875, 0.375), DVec2::new(0.125, 0.625), DVec2::new(0.625, 0.875)];
 
 /// The elements that a view shows.
+#[derive(Debug)]
 pub struct Canvas {
     view: View,
     /// Row after row from the top left, a pixel's samples together.

@@ -21,6 +21,7 @@ const BRIGHTER: Rgb = Rgb([0.64, 0.05, 0.01]);
 const FULL: f64 = 0.05;
 
 /// Light at places, to compare with.
+#[derive(Debug)]
 pub struct Reference {
     places: Vec<Place>,
     /// W/m².
@@ -37,6 +38,7 @@ impl Reference {
 }
 
 /// Our light beside a reference's, at its places.
+#[derive(Debug)]
 pub struct Difference<'a> {
     elements: &'a [Element],
     /// By place and, scaled by the size of the scene, by normal, so that who looks another way is far away: luminance of our

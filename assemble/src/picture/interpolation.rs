@@ -4,6 +4,7 @@ use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
 /// The light of elements.
+#[derive(Debug)]
 pub struct Interpolated<'a> {
     /// The elements.
     pub elements: &'a [Element],

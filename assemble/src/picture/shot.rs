@@ -9,7 +9,7 @@ use crate::picture::interpolation::Interpolated;
 use crate::picture::smooth::corner_irradiance;
 use crate::picture::{BACKGROUND, shade, write_png};
 use crate::solve::Solved;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Camera, Error, Result, Scene};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -73,6 +73,7 @@ pub enum Shading {
 }
 
 /// What was drawn.
+#[derive(Debug)]
 pub struct Drawn {
     /// The pictures.
     pub paths: Vec<PathBuf>,

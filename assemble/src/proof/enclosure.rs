@@ -21,6 +21,7 @@ pub fn is_compressed(nodes: &[InstanceSystem]) -> bool {
 }
 
 /// The form factors of a scene as they are kept.
+#[derive(Debug)]
 pub struct Kept<'a> {
     nodes: &'a [InstanceSystem<'a>],
 }

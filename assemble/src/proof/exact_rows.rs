@@ -17,6 +17,7 @@ pub const ROWS_PER_EXACT_ROW: f64 = 4.0;
 const AT_ONCE: usize = 1024;
 
 /// The residuals of some receivers.
+#[derive(Debug)]
 pub struct Residuals {
     /// W/m², one vector a cluster of receivers, in the order in which they were chosen.
     pub values: Vec<Vec<Rgb>>,

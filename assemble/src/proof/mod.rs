@@ -20,6 +20,7 @@ use sample::{Chosen, ExactRows, choose};
 use std::time::Duration;
 
 /// What is proved and what was measured. The exact answer is that of the matrix in which every entry is for one element.
+#[derive(Debug)]
 pub struct Proof {
     /// No radiosity is further than this from the exact answer, W/m², one row an element.
     pub bound: Vec<Rgb>,
@@ -30,6 +31,7 @@ pub struct Proof {
 }
 
 /// The residual of the answer where rows are exact.
+#[derive(Debug)]
 pub struct Measured {
     /// Number of rows; if they are all, they are what the bound is proved from.
     pub rows: usize,

@@ -3,8 +3,8 @@
 
 use crate::equation::coupling::Coupled;
 use crate::placed::Placed;
-use equilux_bake::cached::Origin;
 use equilux_bake::oven::Baked;
+use equilux_bake::oven::cached::Origin;
 use serde::Serialize;
 
 /// One distinct part, before a run or after it.

@@ -33,7 +33,7 @@ pub const COARSE_SPACES: &str = "coarse spaces between parts that return little 
 pub const SHARED: &str = "own blocks that equal parts share";
 
 /// The results of a run.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The equation that was solved.
     pub equation: &'a Equation,

@@ -16,7 +16,7 @@ use crate::statistics::weighted_rms_over_mean;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Preparation, Prepared, prepare};
+use equilux_bake::oven::prepare::{Preparation, Prepared, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Error, Instance, Result, Rgb, Scene, Store};

@@ -6,7 +6,7 @@ use crate::outputs::check_writable;
 use crate::outputs::requests::OutputRequests;
 use crate::picture::difference::Reference;
 use crate::solve::settings::SolveSettings;
-use equilux_bake::stamp;
+use equilux_bake::oven::stamp;
 use equilux_formats::{Result, Scene};
 use glam::DVec3;
 use std::path::{Path, PathBuf};

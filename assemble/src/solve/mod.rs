@@ -14,13 +14,14 @@ use crate::proof::endless::refuse_endless_light;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
-use equilux_bake::prepare::{Prepared, prepare};
+use equilux_bake::oven::prepare::{Prepared, prepare};
 use equilux_formats::{Element, Result, Rgb, Scene, Store};
 use last_light::{keep, last_light};
 use settings::SolveSettings;
 use std::path::Path;
 
 /// A scene in equilibrium.
+#[derive(Debug)]
 pub struct Solved {
     /// The equation that the light obeys.
     pub equation: Equation,

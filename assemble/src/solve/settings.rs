@@ -2,8 +2,7 @@
 
 use crate::exchange::settings::{Goal, Method};
 use crate::gather::sky::Sky;
-use equilux_bake::prepare::{Division, Preparation};
-use equilux_bake::treecode::Resolution;
+use equilux_bake::oven::prepare::Preparation;
 use equilux_formats::LightUnits;
 use std::path::PathBuf;
 
@@ -26,19 +25,11 @@ pub struct SolveSettings {
     pub warm: bool,
 }
 
-/// The default tolerance of form factors, a share of the mean light.
-const TOLERANCE: f64 = 0.01;
-
 impl Default for SolveSettings {
     fn default() -> Self {
         Self {
             cache: ".equilux".into(),
-            preparation: Preparation {
-                element_size: None,
-                division: Division::Authored,
-                resolution: Resolution::for_tolerance(TOLERANCE),
-                local_solver: None,
-            },
+            preparation: Preparation::default(),
             light_units: None,
             sky: None,
             method: Method::Auto,

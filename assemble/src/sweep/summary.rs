@@ -63,7 +63,7 @@ pub struct Exchange {
 const TARGETS: [f64; 3] = [0.05, 0.02, 0.01];
 
 /// The runs of a sweep, and what it skipped.
-pub struct Found<'a> {
+pub(super) struct Found<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// Its element size by default, metres.
@@ -82,7 +82,7 @@ pub struct Found<'a> {
 
 impl Summary {
     /// Of all runs, compared with the reference.
-    pub fn of(found: &Found, reference: &Reference, compared: Compared) -> Self {
+    pub(super) fn of(found: &Found, reference: &Reference, compared: Compared) -> Self {
         let mut runs: Vec<Row> = found
             .runs
             .iter()

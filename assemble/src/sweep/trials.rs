@@ -9,7 +9,7 @@ use super::row::Compared;
 use super::run::Run;
 use super::setting::{Kind, Setting, Skipped};
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Error, Result, Scene};
 use std::time::{Duration, Instant};

@@ -3,7 +3,7 @@
 use super::length::in_metres;
 use crate::elements::ElementSize;
 use crate::elements::bisect::Cut;
-use crate::oven::prepare::{Division, Preparation};
+use crate::oven::prepare::{Division, Preparation, TOLERANCE};
 use crate::treecode::Resolution;
 use clap::Args;
 use equilux_formats::LocalSolver;
@@ -24,7 +24,7 @@ pub struct SceneOptions {
     pub element_size: Option<ElementSize>,
     /// About how much the answer may err, relative to its mean, because small, far clusters of elements have one exact form
     /// factor; 0 keeps that of every element
-    #[arg(long, value_name = "EPS", default_value = "0.01", value_parser = tolerance)]
+    #[arg(long, value_name = "EPS", default_value_t = TOLERANCE, value_parser = tolerance)]
     pub tolerance: f64,
     /// Make parts by planes: this many cells, each time the largest cut at the median of its longest axis
     #[arg(long, value_name = "N", conflicts_with = "cut", value_parser = clap::value_parser!(u32).range(1..=4096))]

@@ -25,6 +25,7 @@ pub fn monitor_for_program() -> Arc<Monitor> {
 }
 
 /// The thread that shows progress; ends with [`Display::finish`].
+#[derive(Debug)]
 pub struct Display {
     done: Arc<AtomicBool>,
     thread: JoinHandle<()>,

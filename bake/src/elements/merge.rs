@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::hash::Hash;
 
 /// Merged polygons, and which of them each input polygon went into.
+#[derive(Debug)]
 pub struct Merged {
     /// The convex polygons.
     pub faces: Vec<Face>,

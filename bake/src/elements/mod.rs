@@ -66,13 +66,14 @@ pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
 }
 
 /// A part's surfaces as they are cut up, before they are.
+#[derive(Debug)]
 pub struct Panels {
     size: ElementSize,
     panels: Vec<Panel>,
 }
 
 /// A triangle or parallelogram of one material that is cut up as a whole.
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 struct Panel {
     corners: Corners,
     material: MaterialId,

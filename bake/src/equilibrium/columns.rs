@@ -3,6 +3,7 @@
 use equilux_formats::Rows;
 
 /// The block by columns: for each node the receivers that see it.
+#[derive(Debug)]
 pub struct Columns {
     starts: Vec<usize>,
     entries: Vec<(u32, f64)>,

@@ -56,7 +56,7 @@ pub fn gmres(
     }
 }
 
-/// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as [`RESTART`] directions come; and rhs − A z.
+/// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as `RESTART` directions come; and rhs − A z.
 pub fn roughly(mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>, rhs: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
     let mut space = Space::new(rhs);
     let target = space.left() * share;
@@ -70,6 +70,7 @@ pub fn roughly(mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>, rhs: &[Rgb], share: f6
 
 /// A Krylov space that grows by one direction a round, and the correction in it that leaves the least residual: z = Z y
 /// with y minimising ‖r − A Z y‖ in each channel.
+#[derive(Debug)]
 pub struct Space {
     /// An orthonormal basis of r and A Z.
     basis: Vec<Vec<Rgb>>,
@@ -192,6 +193,7 @@ fn normalise(v: &mut [Rgb], length: Rgb) {
 }
 
 /// min ‖β e₁ − H y‖ for the growing Hessenberg matrix H, by Givens rotations, channel by channel.
+#[derive(Debug)]
 struct LeastSquares {
     /// Columns of the triangular factor.
     columns: Vec<Vec<Rgb>>,

@@ -9,6 +9,7 @@ use std::sync::OnceLock;
 pub(super) const ROUNDING: f64 = 1e-14;
 
 /// One part's own equation, ready to be solved again and again.
+#[derive(Debug)]
 pub struct LocalSystem<'a> {
     pub(super) block: &'a Rows,
     pub(super) clusters: &'a ClusterTree,

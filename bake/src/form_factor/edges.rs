@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::f64::consts::PI;
 
 /// Edges that wait for evaluation. Each belongs to one of the values that a block of them adds to.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Edges {
     cosine: Vec<f64>,
     /// n·(a×b) of the unit vectors to the edge's ends, signed.

@@ -27,6 +27,7 @@ pub fn vectorised<R>(kernel: impl FnOnce() -> R) -> R {
 }
 
 /// Points of receivers that look along the same normal, padded with the last to whole lanes.
+#[derive(Debug)]
 pub struct Points {
     lanes: Vec<Vectors>,
     points: Vec<DVec3>,

@@ -10,6 +10,7 @@ use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 
 /// A binary hierarchy of boxes around things.
+#[derive(Debug)]
 pub struct BoxTree {
     nodes: Vec<BoxNode>,
     things: Vec<u32>,
@@ -26,6 +27,7 @@ pub struct BoxNode {
 }
 
 /// What is inside a box.
+#[derive(Debug)]
 pub enum Inside<'a> {
     /// Two smaller boxes.
     Boxes([usize; 2]),

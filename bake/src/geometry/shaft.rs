@@ -22,6 +22,7 @@ const BRIDGES: [(usize, usize, f64, f64); 12] = {
 };
 
 /// A convex region around everything between two boxes.
+#[derive(Debug)]
 pub struct Shaft {
     around: Aabb,
     /// Outward normals by coordinate, and offsets: outside is where n·p ≥ d. Unused ones have no outside.

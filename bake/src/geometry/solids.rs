@@ -15,6 +15,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// A closed shell of faces that look outwards.
+#[derive(Debug)]
 pub struct Solid {
     /// The box around it.
     pub bounds: Aabb,

@@ -4,6 +4,7 @@ use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 
 /// A mesh of planar convex faces, of any shape. Corners are the same if they are equal to the bit.
+#[derive(Debug)]
 pub struct Mesh {
     /// The box around it.
     pub bounds: Aabb,
@@ -28,6 +29,7 @@ pub struct Mesh {
 }
 
 /// An edge, counter-clockwise around the face on its left seen from the front.
+#[derive(Debug)]
 pub(super) struct Edge {
     /// Corner numbers.
     pub ends: [u32; 2],

@@ -11,6 +11,7 @@ use crate::geometry::tolerance::{APART, IN_PLANE, TEN_OPERATIONS};
 use glam::DVec3;
 
 /// A mesh and a sender, both as one receiver sees them.
+#[derive(Debug)]
 pub struct Obstruction<'a, C: Fn(u32) -> bool> {
     seen: &'a SeenMesh<'a>,
     pub(super) sender: &'a SeenPolygon,

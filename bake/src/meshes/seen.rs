@@ -9,6 +9,7 @@ use crate::geometry::tolerance::IN_PLANE;
 use glam::{DVec3, Vec3A};
 
 /// What all senders of one receiver share.
+#[derive(Debug)]
 pub struct SeenMesh<'a> {
     pub(super) mesh: &'a Mesh,
     /// The receiver's point.
@@ -36,7 +37,7 @@ pub(super) struct Hiding {
 }
 
 /// Arcs, and an index over them.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Arcs {
     pub all: Vec<Arc>,
     pub spans: Spans,

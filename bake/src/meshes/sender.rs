@@ -7,6 +7,7 @@ use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
 /// What all meshes that may hide a sender share.
+#[derive(Debug)]
 pub struct SeenPolygon {
     /// Corners relative to the receiver's point, above its horizon, counter-clockwise from the front.
     pub corners: Polygon,

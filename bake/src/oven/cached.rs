@@ -53,6 +53,7 @@ fn look_up<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> std::re
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// How a value was made that the cache did not have.
+#[derive(Debug)]
 pub enum Made<T> {
     /// From the start.
     Whole(T),

@@ -29,6 +29,7 @@ use std::time::{Duration, Instant};
 pub const KERNEL_VERSION: u32 = 6;
 
 /// A baked part and how it came about.
+#[derive(Debug)]
 pub struct Baked {
     /// The part.
     pub part: BakedPart,
@@ -45,6 +46,7 @@ pub struct Baked {
 }
 
 /// What surrounds the baking of a part.
+#[derive(Debug)]
 pub struct Oven<'a> {
     /// The cache.
     pub store: &'a Store,

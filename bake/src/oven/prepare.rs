@@ -28,6 +28,21 @@ pub struct Preparation {
     pub local_solver: Option<LocalSolver>,
 }
 
+impl Default for Preparation {
+    /// The default of the command line.
+    fn default() -> Self {
+        Self {
+            element_size: None,
+            division: Division::Authored,
+            resolution: Resolution::for_tolerance(TOLERANCE),
+            local_solver: None,
+        }
+    }
+}
+
+/// The default tolerance of form factors, a share of the mean light.
+pub const TOLERANCE: f64 = 0.01;
+
 /// What is a part.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Division {
@@ -40,6 +55,7 @@ pub enum Division {
 }
 
 /// A scene whose parts have elements.
+#[derive(Debug)]
 pub struct Prepared {
     /// The distinct parts.
     pub parts: Vec<PreparedPart>,
@@ -57,6 +73,7 @@ impl Prepared {
 }
 
 /// A part that is ready to bake.
+#[derive(Debug)]
 pub struct PreparedPart {
     /// Its name.
     pub name: String,

@@ -9,6 +9,7 @@ use equilux_formats::Element;
 use glam::DVec3;
 use obvhs::bvh2::Bvh2;
 use obvhs::ray::{Ray, RayHit};
+use std::fmt;
 
 /// Finds what a ray meets first.
 pub struct RayIndex<'a> {
@@ -26,6 +27,12 @@ pub struct Hit {
     pub distance: f64,
     /// Whether the ray meets the front.
     pub front: bool,
+}
+
+impl fmt::Debug for RayIndex<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("RayIndex").field("elements", &self.elements.len()).finish_non_exhaustive()
+    }
 }
 
 impl<'a> RayIndex<'a> {

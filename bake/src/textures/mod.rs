@@ -32,6 +32,7 @@ pub fn tints(geometry: &Geometry, materials: &[Material], textured: &[TexturedTr
 }
 
 /// Textured triangles, to be asked for colours.
+#[derive(Debug)]
 pub struct Coat<'a> {
     materials: &'a [Material],
     triangles: Vec<Sheet<'a>>,
@@ -42,6 +43,7 @@ pub struct Coat<'a> {
     slack: f64,
 }
 
+#[derive(Debug)]
 struct Sheet<'a> {
     triangle: &'a TexturedTriangle,
     /// (b − a) × (c − a).

@@ -10,6 +10,7 @@ const ONE: f64 = (1_u64 << 32) as f64 * 255.0;
 const STRIDE: usize = 16;
 
 /// A texture with sums along its rows.
+#[derive(Debug)]
 pub(super) struct Sums<'a> {
     pub(super) texture: &'a Texture,
     /// Linear values of sRGB bytes, of 2^32.

@@ -31,6 +31,7 @@ pub use request::{Audience, Request};
 pub use resolution::{EXACT, MISSED, Resolution};
 
 /// A block and what it took.
+#[derive(Debug)]
 pub struct Timed {
     /// The form factors, `receivers × nodes`.
     pub block: Rows,

@@ -27,6 +27,7 @@ impl<'a> Audience<'a> {
 }
 
 /// One block to compute.
+#[derive(Debug)]
 pub struct Request<'a> {
     /// The geometry.
     pub world: &'a World,

@@ -15,6 +15,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// What appeared in a scene or disappeared from it.
+#[derive(Debug)]
 pub struct Change {
     things: Vec<Thing>,
     /// For each instance whether all of its senders are looked for again: it is new, or somewhere else.
@@ -22,12 +23,14 @@ pub struct Change {
 }
 
 /// Something convex that hides.
+#[derive(Debug)]
 struct Thing {
     bounds: Aabb,
     corners: Vec<DVec3>,
 }
 
 /// A block to be brought up to date.
+#[derive(Debug)]
 pub struct Revision<'a> {
     /// The block as it was, of the same receivers.
     pub old: &'a Rows,
@@ -95,6 +98,7 @@ impl Revision<'_> {
 }
 
 /// A group of rows on its way from what it was to what it will be. Values by receiver.
+#[derive(Debug)]
 pub struct Revised<'a> {
     revision: &'a Revision<'a>,
     group: usize,

@@ -8,6 +8,7 @@ use equilux_formats::{Element, FaceId};
 use glam::DVec3;
 
 /// Some receivers, of which only the hull matters.
+#[derive(Debug)]
 pub struct Viewers {
     /// Box around their points.
     pub bounds: Aabb,
@@ -20,6 +21,7 @@ pub struct Viewers {
 }
 
 /// The face that viewers lie in.
+#[derive(Debug)]
 pub struct Flat {
     /// Unit normal of their side.
     pub normal: DVec3,

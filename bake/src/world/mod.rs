@@ -13,6 +13,7 @@ use occluders::Occluders;
 use std::ops::Range;
 
 /// Placed geometry with what blocks light in it.
+#[derive(Debug)]
 pub struct World {
     /// All elements, instance after instance; `face` counts through [`World::faces`].
     pub elements: Vec<Element>,
@@ -29,6 +30,7 @@ pub struct World {
 }
 
 /// The planes that faces lie in, by number, and the instances they belong to.
+#[derive(Debug)]
 struct Planes {
     in_scene: Vec<u32>,
     in_part: Vec<u32>,

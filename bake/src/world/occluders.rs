@@ -16,6 +16,7 @@ use glam::DVec3;
 use std::collections::HashMap;
 
 /// All occluders of a world.
+#[derive(Debug)]
 pub struct Occluders {
     /// The occluders; in the end the faces of meshes.
     pub all: Vec<Occluder>,
@@ -26,6 +27,7 @@ pub struct Occluders {
 }
 
 /// A face, or faces that hide as a whole.
+#[derive(Debug)]
 pub struct Occluder {
     /// The box around it.
     pub bounds: Aabb,
@@ -40,6 +42,7 @@ pub struct Occluder {
 }
 
 /// How what is hidden is found.
+#[derive(Debug)]
 pub enum Shape {
     /// One face, by its edges.
     Face(Outline),
@@ -50,6 +53,7 @@ pub enum Shape {
 }
 
 /// Faces that hide together, or, where only few of them matter, one by one.
+#[derive(Debug)]
 pub struct Together {
     /// All of them.
     pub mesh: Mesh,

@@ -34,6 +34,7 @@ pub struct Case {
 }
 
 /// Cases about one subject.
+#[derive(Debug)]
 pub struct Theme {
     /// The subject.
     pub name: &'static str,

@@ -9,7 +9,7 @@ use equilux_assemble::report::Report;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_formats::{Result, Rgb};
 use glam::DVec3;
 
@@ -72,6 +72,7 @@ pub struct Lit {
 }
 
 /// The answer.
+#[derive(Debug)]
 pub struct Solved {
     /// All elements, instance after instance.
     pub elements: Vec<Lit>,

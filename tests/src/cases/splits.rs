@@ -5,7 +5,7 @@ use super::{Case, Finding};
 use crate::rooms::{echoing, furnished};
 use crate::workshop::{Workshop, assembled};
 use equilux_assemble::exchange::settings::Method;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_formats::LocalSolver;
 use rayon::ThreadPoolBuilder;
 

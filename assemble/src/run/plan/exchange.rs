@@ -5,7 +5,7 @@ use crate::exchange::coarse::{jacobi_rounds, pays};
 use crate::exchange::settings::Method;
 use crate::solve::settings::SolveSettings;
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::Prepared;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::Rgb;
 
 /// The sentence.
