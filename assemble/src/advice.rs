@@ -19,7 +19,7 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::equilibrium::subtract;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Preparation, Prepared, prepare};
+use equilux_bake::oven::prepare::{Preparation, Prepared, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Error, Instance, Result, Rgb, Scene, Store};

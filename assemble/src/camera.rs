@@ -6,7 +6,7 @@
 
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::geometry::polygon::Polygon;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Camera, Element};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;

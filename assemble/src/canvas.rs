@@ -2,7 +2,7 @@
 //! traced once and then painted as often as the light changes.
 
 use crate::camera::View;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::Rgb;
 use glam::DVec2;
 use image::RgbImage;

@@ -6,9 +6,9 @@
 use crate::hull::intruders;
 use crate::older::Older;
 use crate::placed::Placed;
-use equilux_bake::cached::{Made, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
 use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::cached::{Made, Origin, cached, cached_or_revised, foreseen};
+use equilux_bake::oven::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};

@@ -12,8 +12,8 @@ use crate::observer::Observer;
 use crate::placed::Placed;
 use crate::run::Job;
 use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_bake::oven::{Baked, Oven};
-use equilux_bake::prepare::Prepared;
 use equilux_bake::treecode::Resolution;
 use equilux_formats::{Error, Optics, Result, Rgb, Scene, Store};
 

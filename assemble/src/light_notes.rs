@@ -3,7 +3,7 @@
 
 use crate::gather::outside::{LUMENS_PER_WATT, in_watts};
 use crate::gather::sky::Sky;
-use equilux_bake::enclosed_lamps::{EnclosedLamp, enclosed_lamps};
+use equilux_bake::tidy::enclosed_lamps::{EnclosedLamp, enclosed_lamps};
 use equilux_formats::{LightKind, LightUnits, PunctualLight, Scene};
 use std::f64::consts::PI;
 

@@ -5,7 +5,7 @@ use crate::coupling::Coupled;
 use crate::exchange::{Known, Outcome, StepTimes};
 use crate::placed::Placed;
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::Prepared;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::{Camera, Optics, Rgb, Scene};
 
 /// Sees a run go on. The run waits while it is told: take a copy of what is wanted, and return.

@@ -3,7 +3,7 @@
 //! block up to date.
 
 use crate::placed::Placed;
-use equilux_bake::keys::{Seen, seen_in};
+use equilux_bake::oven::keys::{Seen, seen_in};
 use equilux_bake::treecode::revision::{Change, Revision};
 use equilux_formats::{BakedGeometry, Geometry, Key, Lookup, Manifest, Rows, Store};
 use glam::DAffine3;

@@ -17,7 +17,7 @@ use crate::run::{Job, Pictures};
 use crate::scene_light::SceneLight;
 use crate::{elements_csv, gltf_export};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Error, Result, Rgb, Scene};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Baked parts placed in a scene: one world of all elements, and what each instance needs to take part.
 
-use equilux_bake::cached::Origin;
 use equilux_bake::elements::repainted;
+use equilux_bake::oven::cached::Origin;
 use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::world::World;
 use equilux_formats::{Instance, LocalEquilibrium, Optics, Result};

@@ -6,7 +6,7 @@ use crate::output_file;
 use crate::table::Table;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Element, Result, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 use crate::exchange::Node;
 use crate::light_notes::{NAMED, more};
 use crate::placed::Placed;
-use equilux_bake::enclosed_lamps::enclosed_lamps;
+use equilux_bake::tidy::enclosed_lamps::enclosed_lamps;
 use equilux_formats::Scene;
 
 /// Sentences about the lamps called `unlit`, of which nothing arrives at any element, and about instances that emit but that

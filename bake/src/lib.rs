@@ -27,13 +27,3 @@ pub mod textures;
 pub mod tidy;
 pub mod treecode;
 pub mod world;
-
-pub use elements::{bisect, clusters};
-pub use geometry::{outline, planes, shaft, solids};
-pub use oven::{batch, cached, depfile, keys, prepare, stamp};
-pub use tidy::enclosed_lamps;
-
-/// Rays.
-pub mod visibility {
-    pub use crate::rays;
-}

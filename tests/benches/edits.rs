@@ -7,7 +7,7 @@ use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
 use equilux_tests::levels::furnished;
 use equilux_tests::model::{Model, Node};

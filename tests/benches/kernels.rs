@@ -4,7 +4,7 @@
 
 use equilux_bake::form_factor::contour;
 use equilux_bake::form_factor::wide::{LANES, Points, contours, towards, vectorised};
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_tests::measure::Level;
 use glam::DVec3;
 use std::hint::black_box;

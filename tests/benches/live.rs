@@ -11,7 +11,7 @@ use equilux_assemble::report::Report;
 use equilux_assemble::run::{Job, Pictures, run_observed};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
 use equilux_tests::levels::furnished;
 use equilux_tests::model::{Model, Node};

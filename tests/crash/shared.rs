@@ -3,8 +3,8 @@
 use super::{assert_same, contents, start};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::keys::keys_of;
-use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::keys::keys_of;
+use equilux_bake::oven::prepare::{Division, Preparation, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_formats::{Store, Turn};
 use equilux_tests::rooms::furnished;

@@ -4,7 +4,7 @@ use super::scene;
 use equilux_assemble::lightmap::atlas::Atlas;
 use equilux_assemble::lightmap::texels::Texels;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Instance, Material, Part, PartId, Scene, Texture, TexturedTriangle, Textures, Wrap};
 use equilux_tests::lit::{lightmap, lit_scene};

@@ -2,7 +2,7 @@
 
 use equilux_assemble::lightmap::{Units, Wanted};
 use equilux_assemble::run::Pictures;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_tests::curved::sphere;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, square};

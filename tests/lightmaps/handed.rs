@@ -5,7 +5,7 @@ use equilux_assemble::lightmap::atlas::{Atlas, Tile};
 use equilux_assemble::lightmap::{Units, Wanted};
 use equilux_assemble::run::Pictures;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Material, Part};
 use equilux_tests::lit::{lightmap, lit_scene};

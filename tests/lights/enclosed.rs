@@ -1,6 +1,6 @@
 //! Lamps in closed meshes, and lamps that light nothing, are named; lamps in rooms are not.
 
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::{Material, Part};
 use equilux_tests::cases::solve::{Setting, light};
 use equilux_tests::model::{Model, Node};

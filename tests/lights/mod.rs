@@ -13,7 +13,7 @@ use equilux_assemble::gather::sky::Sky;
 use equilux_assemble::gather::{Gather, Lights};
 use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{LightKind, LightUnits, Part, PunctualLight, Rgb};
 use equilux_tests::lit::{Lit, lit};

@@ -2,7 +2,7 @@
 
 use super::floor;
 use equilux_assemble::run::{Job, Pictures};
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::LightUnits;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, part, rectangle};

@@ -4,7 +4,7 @@ use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
 use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
 use equilux_tests::levels;
 use equilux_tests::rooms;

@@ -5,7 +5,7 @@ use equilux_assemble::coupling::Coupled;
 use equilux_assemble::placed::Placed;
 use equilux_assemble::run::Job;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::Rows;
 use equilux_tests::lit::coupled;

@@ -9,7 +9,7 @@ use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
-use equilux_bake::prepare::PreparedPart;
+use equilux_bake::oven::prepare::PreparedPart;
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Scene, Store, Tints};
 use equilux_tests::model::{Model, Node};

@@ -4,7 +4,7 @@ use equilux_assemble::exchange::{Goal, Method};
 use equilux_assemble::report::Report;
 use equilux_assemble::report::summary::{BLACK_ROWS, DARK_SOLVES, UNSEEN};
 use equilux_assemble::run::Job;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::Material;
 use equilux_tests::model::Node;
 use equilux_tests::rooms::{half, lamp, paint};

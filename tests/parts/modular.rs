@@ -3,7 +3,7 @@
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
 use equilux_assemble::run::Job;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::Resolution;
 use equilux_tests::modular::{PARTS, places, write};
 use equilux_tests::workshop::{Workshop, assembled};

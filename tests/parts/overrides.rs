@@ -3,7 +3,7 @@
 use equilux_assemble::report::Report;
 use equilux_assemble::run::Job;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::{LocalSolver, Material};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{lamp, paint};

@@ -1,7 +1,7 @@
 //! Nothing is computed twice, and what changed is computed again: that part and no other.
 
 use equilux_assemble::report::Report;
-use equilux_bake::prepare::Division;
+use equilux_bake::oven::prepare::Division;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, half, lamp, paint};
 use equilux_tests::shapes::{joined, solid};

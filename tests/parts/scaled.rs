@@ -6,7 +6,7 @@ use equilux_assemble::lightmap::{Units, Wanted};
 use equilux_assemble::run::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::prepare::{Division, Preparation, Prepared, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, Prepared, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Element, Part};
 use equilux_tests::model::{Model, Node};

@@ -3,8 +3,8 @@
 
 use equilux_assemble::exchange::Method;
 use equilux_assemble::run::Job;
-use equilux_bake::bisect::Cut;
-use equilux_bake::prepare::Division;
+use equilux_bake::elements::bisect::Cut;
+use equilux_bake::oven::prepare::Division;
 use equilux_tests::rooms::furnished;
 use equilux_tests::workshop::{Workshop, assembled};
 use proptest::prelude::*;

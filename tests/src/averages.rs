@@ -8,7 +8,7 @@ use equilux_assemble::gather::faces::{Faces, Plane};
 use equilux_assemble::gather::{Gather, Lights};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Instance, Rgb};

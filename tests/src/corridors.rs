@@ -3,7 +3,7 @@
 use crate::assembled::Assembled;
 use crate::levels::furnished;
 use crate::shapes::{grey, joined, part, rectangle, solid};
-use equilux_bake::bisect::bisect;
+use equilux_bake::elements::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::treecode::Resolution;
 use equilux_formats::{Geometry, Optics, Part, Tints};

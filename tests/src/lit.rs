@@ -14,7 +14,7 @@ use equilux_assemble::placed::Placed;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
-use equilux_bake::prepare::{Preparation, prepare};
+use equilux_bake::oven::prepare::{Preparation, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Optics, Scene, Store};
 use std::path::Path;

@@ -9,7 +9,7 @@ use equilux_assemble::report::Report;
 use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

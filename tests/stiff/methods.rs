@@ -2,7 +2,7 @@
 //! start, answers differ by no more than what is proved of each.
 
 use equilux_assemble::exchange::{Goal, Method, exchange};
-use equilux_bake::bisect::bisect;
+use equilux_bake::elements::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::EXACT;

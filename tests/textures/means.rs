@@ -1,7 +1,7 @@
 //! Averages of textures and vertex colours over elements, against what they are by hand.
 
 use super::*;
-use equilux_bake::bisect::Cut;
+use equilux_bake::elements::bisect::Cut;
 use equilux_formats::Material;
 use equilux_tests::curved::sphere;
 use equilux_tests::shapes::triangle;

@@ -5,7 +5,7 @@ mod means;
 
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::prepare::{Division, Prepared, prepare};
+use equilux_bake::oven::prepare::{Division, Prepared, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Part, Rgb};
 use equilux_tests::model::{Model, Node};
@@ -80,7 +80,7 @@ fn png(width: u32, height: u32, texel: impl Fn(u32, u32) -> [u8; 4]) -> Vec<u8> 
 
 /// The scene's parts with elements of this size.
 fn prepared(workshop: &Workshop, element_size: ElementSize, division: Division) -> Prepared {
-    let wanted = equilux_bake::prepare::Preparation {
+    let wanted = equilux_bake::oven::prepare::Preparation {
         element_size: Some(element_size),
         division,
         resolution: EXACT,

@@ -11,7 +11,7 @@ use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
 use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, gathered, places};

@@ -2,7 +2,7 @@
 
 use equilux_assemble::run::{Job, Pictures, run};
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::Resolution;
 use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, Found};

@@ -24,7 +24,7 @@ fn an_error_that_is_asked_for_is_met() {
                 scene: folder.join(name).with_extension("glb"),
                 pictures: Pictures::None,
                 points: Some(folder.join("truth.csv")),
-                ..workshop.job(equilux_bake::prepare::Division::Authored)
+                ..workshop.job(equilux_bake::oven::prepare::Division::Authored)
             };
             let (job, advice) = advise(&job, target, &Monitor::default()).expect("advice");
             run(&job, &Monitor::default()).expect("a run");

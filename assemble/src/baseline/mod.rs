@@ -19,12 +19,12 @@ use crate::placed::Placed;
 use crate::points::{self, Place, PointLight};
 use crate::report::{cpu_seconds, peak_rss};
 use dense::Dense;
-use equilux_bake::cached::Origin;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
+use equilux_bake::oven::cached::Origin;
+use equilux_bake::oven::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
 use equilux_bake::oven::{Baked, geometry_manifest};
-use equilux_bake::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{
     Answers, BakedPart, Error, LightUnits, LocalEquilibrium, Optics, Result, Rgb, Rows, Store,

@@ -3,7 +3,7 @@
 
 use crate::sweep::points::{evenly, place_on};
 use equilux_bake::form_factor::{contour, plain};
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::Element;
 
 /// Row `receiver`: one value an element, from rays between its centroid and `count` points on each element that faces it. The

@@ -5,8 +5,8 @@ use super::Gather;
 use super::faces::Plane;
 use super::receiver;
 use equilux_bake::equilibrium::added;
-use equilux_bake::form_factor::polygon::{Polygon, part};
 use equilux_bake::geometry::aabb::Aabb;
+use equilux_bake::geometry::polygon::{Polygon, part};
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 

@@ -2,7 +2,7 @@
 //! come senders that cover the elements that emit, none of them holding two kinds of light.
 
 use crate::placed::Placed;
-use equilux_bake::clusters::hierarchy;
+use equilux_bake::elements::clusters::hierarchy;
 use equilux_formats::{ClusterTree, Corners, Element, Rgb};
 
 /// Senders, their hierarchy, and what each sends.

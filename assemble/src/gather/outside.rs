@@ -3,7 +3,7 @@
 use super::lamps::Lamp;
 use super::sky::{Radiances, dome};
 use super::{Lights, Sun};
-use equilux_bake::clusters::hierarchy;
+use equilux_bake::elements::clusters::hierarchy;
 use equilux_bake::form_factor::contour;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::world::World;

@@ -2,8 +2,8 @@
 //!
 //! What a sky sends changes no visibility: its cells stay, and each sends what the sky has there on average.
 
-use equilux_bake::clusters::hierarchy;
-use equilux_bake::keys::SKY_CELLS;
+use equilux_bake::elements::clusters::hierarchy;
+use equilux_bake::oven::keys::SKY_CELLS;
 use equilux_formats::{Corners, Element, Error, Face, FaceId, Geometry, MaterialId, Result, Rgb};
 use glam::DVec3;
 use image::codecs::hdr::HdrDecoder;

@@ -8,7 +8,7 @@
 use super::contacts::{SMOOTH, smooth_contacts};
 use super::overlap::any_overlap;
 use super::side::{Side, sides};
-use equilux_bake::planes;
+use equilux_bake::geometry::planes;
 use equilux_formats::{Face, MaterialId, Part};
 use glam::DVec3;
 

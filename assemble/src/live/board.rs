@@ -12,7 +12,7 @@ use crate::placed::Placed;
 use crate::report::{Report, Seconds};
 use crate::steps;
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::Prepared;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::{Camera, Optics, Rgb, Scene};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};

@@ -5,7 +5,7 @@ use crate::camera::View;
 use crate::exposure::Exposure;
 use crate::placed::Placed;
 use equilux_bake::geometry::aabb::Aabb;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Camera, Element, Rgb};
 use glam::{DVec2, UVec2, uvec2};
 use serde_json::json;

@@ -3,9 +3,9 @@
 
 use crate::coupling::Coupled;
 use crate::report::{Report, Seconds};
-use equilux_bake::cached::Origin;
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::{Prepared, PreparedPart};
+use equilux_bake::oven::cached::Origin;
+use equilux_bake::oven::prepare::{Prepared, PreparedPart};
 use equilux_formats::{Instance, Scene};
 use serde::Serialize;
 

@@ -5,7 +5,7 @@ use crate::exchange::Method;
 use crate::exchange::coarse::{jacobi_rounds, pays};
 use crate::run::Job;
 use equilux_bake::oven::Baked;
-use equilux_bake::prepare::Prepared;
+use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::Rgb;
 
 /// The sentence.

@@ -13,7 +13,7 @@ use crate::exposure::Exposure;
 use crate::picture::{BACKGROUND, shade, write_png};
 use difference::Difference;
 pub use difference::Reference;
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Camera, Error, Result, Scene};
 use glam::DVec3;
 use interpolation::Interpolated;

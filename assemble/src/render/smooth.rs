@@ -5,7 +5,7 @@
 //! shines light through a wall that stands on a floor, nor what lies dark below a crate into the light beside it. An element
 //! whose middle lies below a crate is dark all over; where it looks out it takes the light around.
 
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::rays::RayIndex;
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 use rayon::prelude::*;

@@ -7,8 +7,8 @@
 
 use crate::placed::Placed;
 use equilux_bake::geometry::aabb::Aabb;
-use equilux_bake::solids::{Solid, solids};
-use equilux_bake::visibility::rays::RayIndex;
+use equilux_bake::geometry::solids::{Solid, solids};
+use equilux_bake::rays::RayIndex;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Geometry, Instance};
 use glam::DAffine3;

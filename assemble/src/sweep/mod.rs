@@ -22,7 +22,7 @@ mod table;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Error, Result, Scene};
 use folder::{alone, identity, own_points, write};

@@ -10,7 +10,7 @@ mod size;
 use crate::monitor::Monitor;
 use crate::oven::batch::{Batch, PartOutcome, bake_files, find_scenes};
 use crate::oven::keys::drop_unused;
-use crate::{depfile, stamp};
+use crate::oven::{depfile, stamp};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 use equilux_formats::{Store, Swept};

@@ -4,12 +4,12 @@
 mod curved;
 
 use curved::{Triangle, sphere, torus};
-use equilux_bake::clusters::geometry;
+use equilux_bake::elements::clusters::geometry;
 use equilux_bake::elements::{ElementSize, subdivide};
-use equilux_bake::form_factor::polygon::Polygon;
 use equilux_bake::form_factor::{contour, plain};
+use equilux_bake::geometry::outline::Plane;
+use equilux_bake::geometry::polygon::Polygon;
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon};
-use equilux_bake::outline::Plane;
 use equilux_bake::world::World;
 use equilux_formats::{
     Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Surface, Textures,

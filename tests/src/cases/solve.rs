@@ -9,7 +9,7 @@ use equilux_assemble::report::Report;
 use equilux_assemble::run::{Job, run};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_formats::{Result, Rgb};
 use glam::DVec3;
 

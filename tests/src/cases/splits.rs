@@ -6,7 +6,7 @@ use crate::rooms::{echoing, furnished};
 use crate::workshop::{Workshop, assembled};
 use equilux_assemble::exchange::Method;
 use equilux_assemble::run::Job;
-use equilux_bake::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_formats::LocalSolver;
 use rayon::ThreadPoolBuilder;
 

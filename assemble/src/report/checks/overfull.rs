@@ -5,7 +5,7 @@ use super::view::View;
 use crate::account::row_sums;
 use crate::exchange::Node;
 use crate::placed::Placed;
-use equilux_bake::visibility::rays::Hit;
+use equilux_bake::rays::Hit;
 
 /// No sum of a row is further above one than this: the rounding of its entries.
 const ROUNDING: f64 = 1e-6;

@@ -4,7 +4,7 @@
 //! uniformly bright scene would exchange.
 
 use crate::placed::Placed;
-use equilux_bake::visibility::rays::{Hit, RayIndex};
+use equilux_bake::rays::{Hit, RayIndex};
 use equilux_formats::Element;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
