@@ -38,7 +38,7 @@ pub fn write(out: &mut (impl Write + ?Sized), json: &[u8], binary: &[u8]) -> io:
     Ok(())
 }
 
-/// The bytes of a container of two chunks, as [`write`] writes it.
+/// The bytes of a container of two chunks, as [`write()`] writes it.
 pub fn file(json: &[u8], binary: &[u8]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     write(&mut bytes, json, binary)?;

@@ -56,7 +56,7 @@ pub fn gmres(
     }
 }
 
-/// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as [`RESTART`] directions come; and rhs − A z.
+/// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as `RESTART` directions come; and rhs − A z.
 pub fn roughly(mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>, rhs: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
     let mut space = Space::new(rhs);
     let target = space.left().map(|norm| norm * share);
