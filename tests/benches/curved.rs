@@ -3,8 +3,8 @@
 //! `cargo bench -p equilux-tests --bench curved -- [sphere|torus]… [80|1280|5120]…`; all, unless some are named.
 
 use equilux_bake::elements::{ElementSize, subdivide};
-use equilux_bake::form_factor::polygon::{Hides, Polygon, Pyramid};
 use equilux_bake::form_factor::{contour, plain};
+use equilux_bake::geometry::polygon::{Hides, Polygon, Pyramid};
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon, Span, Spans};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};

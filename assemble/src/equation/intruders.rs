@@ -3,8 +3,8 @@
 //! The hull is bounded by pairs of parallel planes in thirteen directions (Klosowski et al. 1998, 26-DOP). It contains
 //! the convex hull, so an intruder is never missed; the cells of a bisection touch it only from outside.
 
-use equilux_bake::form_factor::polygon::{Side, clip};
-use equilux_bake::geometry::planes::FLATNESS;
+use equilux_bake::geometry::polygon::{Side, clip};
+use equilux_bake::geometry::tolerance::FLATNESS;
 use equilux_formats::{Face, Geometry, Instance};
 use glam::{DAffine3, DVec3, dvec3};
 

@@ -2,8 +2,8 @@
 //! I(θ)/I = clamp(cos θ · s + o, 0, 1)², s = 1/(cos inner − cos outer), o = −s cos outer.
 
 use crate::gather::piece::{cells, centre};
-use equilux_bake::form_factor::polygon::{Polygon, Side, clip};
-use equilux_bake::form_factor::solid_angle::solid_angle;
+use equilux_bake::geometry::polygon::{Polygon, Side, clip};
+use equilux_bake::geometry::solid_angle::solid_angle;
 use glam::DVec3;
 use std::f64::consts::TAU;
 

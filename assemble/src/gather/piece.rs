@@ -1,7 +1,7 @@
 //! Planar convex pieces of surface: their grids and their centres.
 
 use crate::gather::faces::Plane;
-use equilux_bake::form_factor::polygon::{Polygon, part};
+use equilux_bake::geometry::polygon::{Polygon, part};
 use glam::DVec3;
 
 /// A planar convex piece of surface, seen from its lit side.

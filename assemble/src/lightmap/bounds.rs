@@ -1,7 +1,7 @@
 //! The smallest rectangle around a chart in its plane.
 
 use super::chart::Chart;
-use equilux_bake::form_factor::polygon::convex_hull;
+use equilux_bake::geometry::polygon::convex_hull;
 use glam::{DVec2, DVec3, dvec2};
 
 /// The rectangle around a chart in its plane, turned so that its area is smallest.

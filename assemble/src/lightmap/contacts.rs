@@ -5,7 +5,7 @@
 
 use super::side::Side;
 use equilux_bake::geometry::aabb::Aabb;
-use equilux_bake::geometry::planes::FLATNESS;
+use equilux_bake::geometry::tolerance::FLATNESS;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_6;
 

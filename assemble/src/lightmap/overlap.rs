@@ -1,6 +1,6 @@
 //! Whether convex polygons overlap when seen from one direction: by separating axes. Touching is not overlapping.
 
-use equilux_bake::geometry::planes::FLATNESS;
+use equilux_bake::geometry::tolerance::FLATNESS;
 use equilux_formats::Corners;
 use glam::{DVec2, DVec3};
 

@@ -4,7 +4,7 @@
 use super::chart::Chart;
 use super::grid::Grid;
 use super::patch::Patch;
-use equilux_bake::form_factor::polygon::{Polygon, part};
+use equilux_bake::geometry::polygon::{Polygon, part};
 use equilux_formats::MaterialId;
 use glam::{DAffine3, DVec2, DVec3};
 use std::collections::BTreeMap;

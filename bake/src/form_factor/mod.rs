@@ -7,5 +7,3 @@ pub mod contour;
 pub mod edges;
 pub mod plain;
 pub mod wide;
-
-pub use crate::geometry::{polygon, solid_angle};

@@ -5,8 +5,8 @@
 //! faster way is tested against.
 
 use super::contour;
-use super::polygon::{Polygon, Pyramid, Side, clip};
 use crate::geometry::outline::Plane;
+use crate::geometry::polygon::{Polygon, Pyramid, Side, clip};
 use crate::geometry::tolerance::IN_PLANE;
 use crate::world::World;
 use equilux_formats::{Element, Face, FaceId};

@@ -1,6 +1,6 @@
 //! Which faces lie in one plane. Such faces neither light nor hide one another, whatever rounding says.
 
-pub use super::tolerance::FLATNESS;
+use super::tolerance::FLATNESS;
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;

@@ -8,17 +8,17 @@
 //! shafts; what is new is that no entry is an approximation.
 
 mod candidates;
-mod cones;
 mod descent;
+mod evaluate;
 mod frontier;
 mod pieces;
+mod pyramids;
 mod receivers;
 mod request;
 mod resolution;
 pub mod revision;
 mod search;
 mod seen_meshes;
-mod terminal;
 mod viewers;
 
 use crate::monitor::Monitor;

@@ -1,12 +1,12 @@
 //! One flat cluster of receivers looking for its senders.
 
 use super::candidates::{Candidates, Verdict};
+use super::evaluate::Evaluator;
 use super::frontier::Frontier;
 use super::receivers::Receivers;
 use super::request::Request;
 use super::resolution::MISSED;
 use super::revision::Revised;
-use super::terminal::Evaluator;
 use crate::world::Node;
 use equilux_formats::RowGroup;
 use std::collections::BinaryHeap;
@@ -20,20 +20,20 @@ const NEARLY_COMPLETE: f64 = MISSED / 10.0;
 
 /// How much wider clusters open that nothing stands before, found by measuring: it gives all links the same share of the
 /// error in furnished rooms.
-const CLEAR: f64 = 5.0;
+const UNOCCLUDED_OPENING_FACTOR: f64 = 5.0;
 
 /// Levels of the senders' hierarchy from one narrowing of the list to the next.
 const NARROW_EVERY: u32 = 2;
 
 /// Clusters behind something are tried though they promise an error up to this many times too large: often little of
 /// them is seen.
-const TRY: f64 = 16.0;
+const MAX_TRIAL_ERROR_RATIO: f64 = 16.0;
 
 /// Share of the error that may be left to such a cluster: what little is seen of it may be unlike the rest.
-const SEEN: f64 = 0.3;
+const PARTIAL_VISIBILITY_SHARE: f64 = 0.3;
 
 /// After a vain try the next is made where the promise is this much smaller.
-const AGAIN: f64 = 0.25;
+const RETRY_SHRINK: f64 = 0.25;
 
 /// One cluster of receivers looking for its senders.
 pub struct Search<'a> {
@@ -181,7 +181,7 @@ impl<'a> Search<'a> {
         let opening = self.request.resolution.opening;
         let error = if sender.children.is_none() { 0.0 } else { self.error(sender) };
         // Lists are narrowed where it may decide something, and every few levels at least.
-        let may_end = error <= opening * CLEAR.max(TRY);
+        let may_end = error <= opening * UNOCCLUDED_OPENING_FACTOR.max(MAX_TRIAL_ERROR_RATIO);
         let (verdict, levels) = if may_end {
             (self.candidates.occluders(candidates, viewers, sender), 0)
         } else if levels + 1 == NARROW_EVERY {
@@ -191,10 +191,10 @@ impl<'a> Search<'a> {
         };
         let Verdict::Between(kept) = verdict else { return };
         let clear = kept.is_empty();
-        let found = if error <= opening * if clear { CLEAR } else { 1.0 } {
+        let found = if error <= opening * if clear { UNOCCLUDED_OPENING_FACTOR } else { 1.0 } {
             self.take(node, kept.clone(), f64::INFINITY)
-        } else if may_end && !clear && error <= tried * AGAIN {
-            self.take(node, kept.clone(), SEEN * opening / self.slant(sender))
+        } else if may_end && !clear && error <= tried * RETRY_SHRINK {
+            self.take(node, kept.clone(), PARTIAL_VISIBILITY_SHARE * opening / self.slant(sender))
         } else {
             Taken::TooMuch
         };

@@ -20,7 +20,7 @@ pub struct SeenMeshes<'a> {
 }
 
 /// What of them may hide something of one sender from one receiver.
-pub struct Curtains<'s> {
+pub struct MeshOccluders<'s> {
     world: &'s World,
     side: Side,
     meshes: SmallVec<[&'s SeenMesh<'s>; 8]>,
@@ -44,21 +44,21 @@ impl<'a> SeenMeshes<'a> {
 
     /// What may hide something of a sender from a receiver, by its number. `corners` are those of the sender relative to
     /// the receiver's point, above its horizon; the `side` is what it lies on.
-    pub fn curtains(
+    pub fn occluders(
         &mut self,
         receivers: &Receivers,
         receiver: usize,
         corners: impl FnOnce() -> Polygon,
         side: Side,
-    ) -> Curtains<'_> {
-        let mut curtains = Curtains { world: self.world, side, meshes: SmallVec::new() };
+    ) -> MeshOccluders<'_> {
+        let mut occluders = MeshOccluders { world: self.world, side, meshes: SmallVec::new() };
         if !self.before.is_empty() {
             self.make(receivers, receiver);
             let sender = SeenPolygon::new(corners(), side.normal, side.face.0);
             let seen = self.before.iter().filter_map(|&o| self.known[o as usize][receiver].as_deref());
-            curtains.meshes.extend(seen.filter(|seen| seen.span.meets(&sender.span)));
+            occluders.meshes.extend(seen.filter(|seen| seen.span.meets(&sender.span)));
         }
-        curtains
+        occluders
     }
 
     /// See to it that all before the sender are known.
@@ -80,7 +80,7 @@ fn seen<'a>(world: &'a World, occluder: u32, receivers: &Receivers, receiver: us
     mesh.seen_from(point, receivers.points.normal(), |face| world.coplanar(own, FaceId(face)))
 }
 
-impl Curtains<'_> {
+impl MeshOccluders<'_> {
     /// Whether nothing is hidden.
     pub fn is_empty(&self) -> bool {
         self.meshes.is_empty()

@@ -6,9 +6,9 @@ mod curved;
 use curved::{Triangle, sphere, torus};
 use equilux_bake::elements::clusters::geometry;
 use equilux_bake::elements::{ElementSize, subdivide};
-use equilux_bake::form_factor::polygon::Polygon;
 use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::geometry::outline::Plane;
+use equilux_bake::geometry::polygon::Polygon;
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon};
 use equilux_bake::world::World;
 use equilux_formats::{

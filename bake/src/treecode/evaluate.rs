@@ -6,10 +6,10 @@
 //! some of what is left.
 
 use super::candidates::Entry;
-use super::cones::{Cone, Cones, Lies, Planes, REST, lies, normal_of};
 use super::pieces::{Pieces, Scissors};
+use super::pyramids::{Lies, OccluderPyramids, Planes, Pyramids, REST, lies, normal_of};
 use super::receivers::Receivers;
-use super::seen_meshes::{Curtains, SeenMeshes};
+use super::seen_meshes::{MeshOccluders, SeenMeshes};
 use crate::form_factor::contour;
 use crate::form_factor::edges::Edges;
 use crate::form_factor::wide::{LANES, Lane, STEEP, Vectors, contours, squared, towards, vectorised};
@@ -26,11 +26,11 @@ use smallvec::SmallVec;
 pub struct Evaluator<'a> {
     world: &'a World,
     /// Pyramids of whole occluders.
-    whole: Cones,
+    whole: Pyramids,
     /// Those of each occluder, once they were needed.
-    known: Vec<Option<Cone>>,
+    known: Vec<Option<OccluderPyramids>>,
     /// Pyramids of what one sender's plane leaves of occluders.
-    pieces: Cones,
+    pieces: Pyramids,
     meshes: SeenMeshes<'a>,
     /// The pyramids before the sender, and whose they are.
     before: Vec<Before>,
@@ -42,8 +42,8 @@ pub struct Evaluator<'a> {
 /// A pyramid before the sender.
 #[derive(Clone, Copy)]
 enum Before {
-    Whole(Cone),
-    Piece(Cone),
+    Whole(OccluderPyramids),
+    Piece(OccluderPyramids),
 }
 
 /// What some receivers, a lane each, see of a sender.
@@ -73,9 +73,9 @@ impl<'a> Evaluator<'a> {
     pub fn new(world: &'a World) -> Self {
         Self {
             world,
-            whole: Cones::default(),
+            whole: Pyramids::default(),
             known: vec![None; world.occluders.all.len()],
-            pieces: Cones::default(),
+            pieces: Pyramids::default(),
             meshes: SeenMeshes::new(world),
             before: vec![],
             chunk: Chunk::default(),
@@ -106,8 +106,8 @@ impl<'a> Evaluator<'a> {
         let first = values.len();
         for (number, points) in receivers.points.lanes().iter().enumerate() {
             let planes_of = |before: &Before| match *before {
-                Before::Whole(cone) => whole.planes(cone, number),
-                Before::Piece(cone) => pieces.planes(cone, number),
+                Before::Whole(pyramids) => whole.planes(pyramids, number),
+                Before::Piece(pyramids) => pieces.planes(pyramids, number),
             };
             let planes: SmallVec<[&[Planes]; 16]> = before.iter().map(planes_of).collect();
             vectorised(
@@ -121,8 +121,8 @@ impl<'a> Evaluator<'a> {
                     continue;
                 }
                 let receiver = number * LANES + lane;
-                let curtains = meshes.curtains(receivers, receiver, || chunk.corners_of(lane), side);
-                let seen = Seen { chunk, planes: &planes, curtains, lane, normal };
+                let occluders = meshes.occluders(receivers, receiver, || chunk.corners_of(lane), side);
+                let seen = Seen { chunk, planes: &planes, occluders, lane, normal };
                 clipper.add(seen, values, edges);
             }
         }
@@ -140,7 +140,9 @@ impl<'a> Evaluator<'a> {
         let height = |p: DVec3| side.normal.dot(p - corner);
         let lanes = receivers.points.lanes();
         for entry in occluders {
-            let Entry::Occluder(index) = *entry else { unreachable!("lists of terminals are opened") };
+            let Entry::Occluder(index) = *entry else {
+                unreachable!("lists of senders that are evaluated are opened")
+            };
             let occluder = &self.world.occluders.all[index as usize];
             let slack = IN_PLANE * (occluder.diameter + (occluder.corners[0] - corner).length());
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -161,8 +163,8 @@ impl<'a> Evaluator<'a> {
             if low >= -slack {
                 let whole = &mut self.whole;
                 let known = &mut self.known[index as usize];
-                let cone = known.get_or_insert_with(|| whole.add(outline, lanes));
-                self.before.push(Before::Whole(*cone));
+                let pyramids = known.get_or_insert_with(|| whole.add(outline, lanes));
+                self.before.push(Before::Whole(*pyramids));
                 continue;
             }
             let piece = if !outline.thin {
@@ -245,7 +247,7 @@ impl Chunk {
 struct Seen<'a> {
     chunk: &'a mut Chunk,
     planes: &'a [&'a [Planes]],
-    curtains: Curtains<'a>,
+    occluders: MeshOccluders<'a>,
     lane: usize,
     normal: DVec3,
 }
@@ -261,9 +263,9 @@ struct Clipper {
 impl Clipper {
     /// Correct the last of `values`, which is the unoccluded form factor, not zero.
     fn add(&mut self, seen: Seen, values: &mut [f64], edges: &mut Edges) {
-        let Seen { chunk, planes, curtains, lane, normal } = seen;
+        let Seen { chunk, planes, occluders, lane, normal } = seen;
         let place = values.len() - 1;
-        if chunk.cuts[lane].is_empty() && curtains.is_empty() && !chunk.plain[lane] {
+        if chunk.cuts[lane].is_empty() && occluders.is_empty() && !chunk.plain[lane] {
             return;
         }
         let plain = chunk.plain[lane];
@@ -285,8 +287,8 @@ impl Clipper {
             normals.filter(|&normal| normal != DVec3::ZERO)
         };
         match chunk.cuts[lane].as_mut_slice() {
-            [] if curtains.is_empty() => {}
-            [cut] if curtains.is_empty() => {
+            [] if occluders.is_empty() => {}
+            [cut] if occluders.is_empty() => {
                 let hidden = self.scissors.intersect(&polygon, cutting(cut), chunk.slack[lane]);
                 if !hidden.is_empty() {
                     sum(hidden, -1.0, values);
@@ -304,7 +306,7 @@ impl Clipper {
                     }
                     std::mem::swap(&mut self.pieces, &mut self.outside);
                 }
-                curtains.subtract_from(&mut self.pieces, &mut self.outside);
+                occluders.subtract_from(&mut self.pieces, &mut self.outside);
                 values[place] = 0.0;
                 for piece in self.pieces.iter() {
                     sum(piece, 1.0, values);

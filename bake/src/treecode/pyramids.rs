@@ -13,7 +13,7 @@ pub type Planes = [Lane; 4];
 
 /// The pyramids of many occluders.
 #[derive(Default)]
-pub struct Cones {
+pub struct Pyramids {
     planes: Vec<Planes>,
     /// Where the planes of each occluder's each chunk of receivers end.
     ends: Vec<usize>,
@@ -21,7 +21,7 @@ pub struct Cones {
 
 /// The pyramids of one occluder.
 #[derive(Debug, Clone, Copy)]
-pub struct Cone {
+pub struct OccluderPyramids {
     first: u32,
 }
 
@@ -37,7 +37,7 @@ pub struct Lies {
 /// The bit that stands for all planes from this one on.
 pub const REST: usize = 63;
 
-impl Cones {
+impl Pyramids {
     /// Forget all.
     pub fn clear(&mut self) {
         self.planes.clear();
@@ -45,7 +45,7 @@ impl Cones {
     }
 
     /// The pyramids that an occluder hides from the points of all lanes.
-    pub fn add(&mut self, outline: &Outline, lanes: &[Vectors]) -> Cone {
+    pub fn add(&mut self, outline: &Outline, lanes: &[Vectors]) -> OccluderPyramids {
         let first = self.ends.len();
         vectorised(
             #[inline(always)]
@@ -56,12 +56,12 @@ impl Cones {
                 }
             },
         );
-        Cone { first: first as u32 }
+        OccluderPyramids { first: first as u32 }
     }
 
     /// The planes of one chunk of receivers.
-    pub fn planes(&self, cone: Cone, chunk: usize) -> &[Planes] {
-        &self.planes[self.range(cone.first as usize + chunk)]
+    pub fn planes(&self, pyramids: OccluderPyramids, chunk: usize) -> &[Planes] {
+        &self.planes[self.range(pyramids.first as usize + chunk)]
     }
 
     fn range(&self, chunk: usize) -> Range<usize> {
