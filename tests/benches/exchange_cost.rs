@@ -137,11 +137,11 @@ fn line(outcome: &Outcome, whole: Duration) {
         a_round(transfer),
         a_round(over.krylov),
         100.0 * over.krylov.as_secs_f64() / (solve + transfer).as_secs_f64(),
-        a_round(over.judging),
+        a_round(over.estimates),
         ms(over.account),
         ms(over.coarse),
         ms(over.margin),
-        ms(over.proving),
+        ms(over.proof),
         ms(whole),
     );
 }

@@ -1,12 +1,12 @@
-//! Which receivers take part in the rounds. A receiver that is black in all channels sends the same whatever arrives, so
-//! its irradiance is gathered once, when the light of all others is known. Receivers wait in whole groups of rows, which
-//! lie in one face and mostly share a material.
+//! Receivers that take part in the rounds. A receiver that is black in all channels sends the same radiosity whatever
+//! arrives, so its irradiance is gathered only once, from the final radiosities. Rows are skipped in whole groups,
+//! since a group of rows lies in one face and usually shares a material.
 
 use crate::exchange::system::InstanceSystem;
 use equilux_formats::{Rgb, Rows};
 use rayon::prelude::*;
 
-/// The groups of rows of an instance's two blocks that take part.
+/// The row groups of an instance's two blocks that take part in the rounds.
 #[derive(Debug)]
 pub struct ActiveRows {
     own: Vec<bool>,
@@ -14,7 +14,7 @@ pub struct ActiveRows {
 }
 
 impl ActiveRows {
-    /// All groups with a receiver that is not black.
+    /// The groups that contain a receiver that is not black.
     pub fn of(system: &InstanceSystem) -> Self {
         let reflects = |i: usize| system.optics.reflectance[i] != Rgb::BLACK;
         let of = |block: &Rows| -> Vec<bool> {
@@ -23,26 +23,28 @@ impl ActiveRows {
         Self { own: of(system.self_block), coupling: of(system.coupling) }
     }
 
-    /// All other groups.
+    /// The groups that do not take part.
     pub fn inactive(&self) -> Self {
         let inverse = |active: &[bool]| active.iter().map(|active| !active).collect();
         Self { own: inverse(&self.own), coupling: inverse(&self.coupling) }
     }
 
-    /// Irradiance from the instance itself, W/m², of which the radiosity of its nodes is given; zero for those who wait.
+    /// Irradiance from the instance itself, W/m². `own`: radiosity of the instance's nodes, W/m². Skipped rows get
+    /// zero.
     pub fn own_irradiance(&self, system: &InstanceSystem, own: &[Rgb]) -> Vec<Rgb> {
         gather(system.self_block, &self.own, own)
     }
 
-    /// Irradiance from all other instances, W/m², of which the radiosity of all nodes is given; zero for those who wait.
+    /// Irradiance from all other instances, W/m². `all`: radiosity of all nodes of the scene, W/m². Skipped rows get
+    /// zero.
     pub fn coupled_irradiance(&self, system: &InstanceSystem, all: &[Rgb]) -> Vec<Rgb> {
         gather(system.coupling, &self.coupling, all)
     }
 
-    /// Number of rows of the coupling that wait.
-    pub fn waiting(&self, system: &InstanceSystem) -> usize {
-        let waits = (0..self.coupling.len()).filter(|&group| !self.coupling[group]);
-        waits.map(|group| system.coupling.receivers_of(group).len()).sum()
+    /// Number of rows of the coupling that are skipped.
+    pub fn skipped(&self, system: &InstanceSystem) -> usize {
+        let skipped_groups = (0..self.coupling.len()).filter(|&group| !self.coupling[group]);
+        skipped_groups.map(|group| system.coupling.receivers_of(group).len()).sum()
     }
 }
 

@@ -1,9 +1,10 @@
-//! One round of the exchange: equilibria of the parts (steps 5, 6 of the paper) and transfers (7, 8). In goes what the
-//! equation misses, v; out come a correction z that every part answers it with, and A z.
+//! One round of the exchange: equilibria of the parts (steps 5 and 6 of the paper) and transfers (steps 7 and 8).
+//! Input: the residual v of the equation. Output: a correction z, to which each part contributes its local response,
+//! and A z.
 //!
-//! Parts take turns. In its turn a part solves (I − ρF_kk) z_k = v_k + ρ Σ_{l≠k} F_kl z_l with the newest z_l. With one turn
-//! for all that is block Jacobi, with one turn each block Gauss-Seidel. Only transfers are needed for A z then: its own
-//! part of each row is what was just solved.
+//! Parts are solved in turns. In its turn a part solves (I − ρF_kk) z_k = v_k + ρ Σ_{l≠k} F_kl z_l with the newest
+//! z_l. A single turn for all parts is block Jacobi; one turn for each part is block Gauss-Seidel. A z then needs
+//! only transfers, since the part's own share of each row was just solved.
 
 use crate::exchange::groups::Group;
 use crate::exchange::step_times::StepTimes;
@@ -11,83 +12,83 @@ use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// Who is solved when, and how exactly.
+/// The order in which members are solved, and the accuracy of their local solutions.
 pub struct BlockCorrection<'a> {
     group: &'a Group<'a>,
     /// The turn of each member.
     turns: Vec<usize>,
-    /// What a local solver may leave of its sources; none for rounding.
+    /// Share of the sources that a local solver may leave unsolved; none to solve until rounding.
     share: Option<f64>,
-    /// Local equilibria that were not asked for, because nothing shone in the instance.
+    /// Number of local solves that were skipped because the sources were zero.
     pub idle: usize,
 }
 
-/// What a member found in its turn.
+/// Result of one member's turn.
 struct MemberCorrection {
     correction: Vec<Rgb>,
-    /// What the local solver left.
+    /// Residual that the local solver left, W/m².
     left: Vec<Rgb>,
     idle: bool,
     time: Duration,
 }
 
-/// The light of a sweep on its way.
+/// Corrections during one round.
 #[derive(Debug)]
 struct NewestCorrections {
-    /// The newest corrections, of all senders of the scene.
+    /// The newest corrections of all senders of the scene, W/m².
     all: Vec<Rgb>,
-    /// Which members have any.
+    /// Whether each member has a correction.
     lit: Vec<bool>,
 }
 
 impl<'a> BlockCorrection<'a> {
-    /// Members take turns in order, `turns` of them in all; one solves until `share` of its sources is left, or until
-    /// rounding.
+    /// Distribute the members over `turns` turns in order. A member solves until `share` of its sources is left, or
+    /// until rounding if `share` is none.
     pub fn new(group: &'a Group<'a>, turns: usize, share: Option<f64>) -> Self {
         Self { group, turns: (0..group.members.len()).map(|m| m % turns.max(1)).collect(), share, idle: 0 }
     }
 
-    /// The correction z that starts from `start` (nothing, if none), and A z. Vectors of the group, W/m².
+    /// The correction z, starting from `start` (from zero if none), and A z. Both are vectors of the group, W/m².
     pub fn correct(
         &mut self,
-        missing: &[Rgb],
+        residual: &[Rgb],
         start: Option<Vec<Rgb>>,
         times: &mut StepTimes,
     ) -> (Vec<Rgb>, Vec<Rgb>) {
         let group = self.group;
         let count = group.members.len();
-        let mut light = NewestCorrections {
+        let mut newest = NewestCorrections {
             all: vec![Rgb::BLACK; group.scene_senders()],
             lit: vec![start.is_some(); count],
         };
-        let mut correction = start.unwrap_or_else(|| vec![Rgb::BLACK; missing.len()]);
-        for member in (0..count).filter(|&m| light.lit[m]) {
-            group.send(member, &correction[group.elements_of(member)], &mut light.all);
+        let mut correction = start.unwrap_or_else(|| vec![Rgb::BLACK; residual.len()]);
+        for member in (0..count).filter(|&m| newest.lit[m]) {
+            group.send(member, &correction[group.elements_of(member)], &mut newest.all);
         }
-        let (mut heard, mut left) = (vec![vec![]; count], vec![vec![]; count]);
+        let (mut arrived, mut left) = (vec![vec![]; count], vec![vec![]; count]);
         for turn in 0..=self.turns.iter().copied().max().unwrap_or(0) {
             let now: Vec<usize> = (0..count).filter(|&m| self.turns[m] == turn).collect();
             for &member in &now {
-                heard[member] = self.hear(member, &light, times);
+                arrived[member] = self.gather(member, &newest, times);
             }
-            let solve = |&m: &usize| self.solve(m, &missing[group.elements_of(m)], &heard[m]);
+            let solve = |&m: &usize| self.solve(m, &residual[group.elements_of(m)], &arrived[m]);
             let solved: Vec<MemberCorrection> = now.par_iter().map(solve).collect();
             for (&member, solved) in now.iter().zip(solved) {
                 times.solve[group.members[member]] += solved.time;
                 self.idle += usize::from(solved.idle);
-                group.send(member, &solved.correction, &mut light.all);
-                light.lit[member] = !solved.idle;
+                group.send(member, &solved.correction, &mut newest.all);
+                newest.lit[member] = !solved.idle;
                 correction[group.elements_of(member)].copy_from_slice(&solved.correction);
                 left[member] = solved.left;
             }
         }
         let image = |m: usize| -> Vec<Rgb> {
-            let missing = missing[group.elements_of(m)].iter().zip(&left[m]);
-            let solved = missing.map(|(&v, &left)| v - left);
+            let pairs = residual[group.elements_of(m)].iter().zip(&left[m]);
+            let solved = pairs.map(|(&v, &left)| v - left);
             if !self.is_stale(m) {
                 return solved.collect();
             }
-            let changes = heard[m].iter().zip(self.hear(m, &light, times));
+            let changes = arrived[m].iter().zip(self.gather(m, &newest, times));
             let rows = solved.zip(&group.system(m).optics.reflectance).zip(changes);
             rows.map(|((v, &rho), (&before, now))| v + rho * (before - now)).collect()
         };
@@ -95,26 +96,28 @@ impl<'a> BlockCorrection<'a> {
         (correction, image)
     }
 
-    /// Irradiance from the other members; nothing is gathered in the dark.
-    fn hear(&self, member: usize, light: &NewestCorrections, times: &mut StepTimes) -> Vec<Rgb> {
-        if !self.group.sees[member].iter().any(|&sender| light.lit[sender]) {
+    /// Irradiance of a member from the other members' corrections, W/m². Gathers nothing if those corrections are
+    /// zero.
+    fn gather(&self, member: usize, newest: &NewestCorrections, times: &mut StepTimes) -> Vec<Rgb> {
+        if !self.group.sees[member].iter().any(|&sender| newest.lit[sender]) {
             return vec![Rgb::BLACK; self.group.elements_of(member).len()];
         }
         let start = Instant::now();
-        let arriving = self.group.arriving(member, &light.all);
+        let arriving = self.group.arriving(member, &newest.all);
         times.transfer[self.group.members[member]] += start.elapsed();
         arriving
     }
 
-    /// Whether a member has not heard the newest of what it sees: of those who have the same turn or a later one.
+    /// Whether a member was solved before the newest correction of some member it receives from was known, that is,
+    /// of a member with the same or a later turn.
     fn is_stale(&self, member: usize) -> bool {
         self.group.sees[member].iter().any(|&sender| self.turns[sender] >= self.turns[member])
     }
 
-    fn solve(&self, member: usize, missing: &[Rgb], heard: &[Rgb]) -> MemberCorrection {
+    fn solve(&self, member: usize, residual: &[Rgb], arrived: &[Rgb]) -> MemberCorrection {
         let start = Instant::now();
         let system = self.group.system(member);
-        let rows = missing.iter().zip(&system.optics.reflectance).zip(heard);
+        let rows = residual.iter().zip(&system.optics.reflectance).zip(arrived);
         let sources: Vec<Rgb> = rows.map(|((&v, &rho), &h)| v + rho * h).collect();
         let dark = vec![Rgb::BLACK; sources.len()];
         let idle = sources == dark;

@@ -1,9 +1,9 @@
-//! What is proved about a round: |B − B̃| ≤ max_i(|r_i| / (A w)_i) w, with the residual r = E + ρF B̃ − B̃ and any w > 0 with
-//! A w > 0.
+//! The proved error bound of a round: |B − B̃| ≤ max_i(|r_i| / (A w)_i) w, with the residual r = E + ρF B̃ − B̃ and
+//! any w > 0 with A w > 0.
 //!
-//! A = I − ρF has non-positive off-diagonals, so such a w makes A⁻¹ ≥ 0 and bounds it (Berman & Plemmons 1994, ch. 6, on
-//! M-matrices). With w = 1, (A w)_i is the share of light that element i takes out of the scene. Where elements differ
-//! much in that, a w that solves A w = 1 roughly proves far more.
+//! A = I − ρF has non-positive off-diagonals, so such a w makes A⁻¹ ≥ 0 and bounds it (Berman & Plemmons 1994, ch. 6,
+//! on M-matrices). With w = 1, (A w)_i is the share of light that element i removes from the scene. Where elements
+//! differ strongly in that share, an approximate solution of A w = 1 proves a much smaller bound.
 
 use crate::exchange::block_correction::BlockCorrection;
 use crate::exchange::coarse::Coarse;
@@ -13,22 +13,22 @@ use equilux_bake::equilibrium::krylov::Space;
 use equilux_bake::equilibrium::largest;
 use equilux_formats::Rgb;
 
-/// Where the element that loses least loses less than this share of the mean, w = 1 is given up.
-const UNEVEN: f64 = 0.2;
+/// w = 1 is rejected where the smallest (A w)_i is below this share of the mean.
+const MIN_LOSS_SHARE: f64 = 0.2;
 
-/// A w may be anything positive; rounds end when nowhere more than this is missing from 1.
-const ROUGH: f64 = 0.5;
+/// A w only needs to be positive: the search for w ends when no component of A w is further than this from 1.
+const MARGIN_TOLERANCE: f64 = 0.5;
 
-/// Krylov spaces after which no w is found: nothing takes light out of the scene.
-const PATIENCE: usize = 4;
+/// Number of Krylov spaces after which the search for w gives up: nothing removes light from the scene.
+const MAX_KRYLOV_SPACES: usize = 4;
 
-/// Roundings of a row's sum, of its own size: what a computed residual may hide.
-const ROUNDINGS: f64 = 4.0 * f64::EPSILON;
+/// Rounding error of a row's sum relative to the sum: the part of the residual that rounding may hide.
+const ROUNDING_SHARE: f64 = 4.0 * f64::EPSILON;
 
-/// Another bounce is looked at if the last one lowered the bound to less than this share.
-const WORTH: f64 = 0.7;
+/// Another bounce is computed if the last one lowered the bound below this share of its former value.
+const MIN_IMPROVEMENT_RATIO: f64 = 0.7;
 
-/// How residuals prove bounds in a group of parts. Vectors of the group.
+/// The vector w that turns residuals into error bounds for a group of parts. Vectors of the group.
 pub struct Margin {
     /// w.
     vector: Vec<Rgb>,
@@ -37,7 +37,7 @@ pub struct Margin {
 }
 
 impl Margin {
-    /// The margin of a group's elements; parts take `turns` where w has to be found.
+    /// The margin for a group's elements. If w has to be solved for, parts are solved in `turns` turns.
     pub fn of(group: &Group, coarse: Option<&Coarse>, turns: usize) -> Self {
         let constant = Self::by(group, vec![Rgb::WHITE; group.elements()]);
         if constant.is_even() {
@@ -53,7 +53,7 @@ impl Margin {
         Self { image: group.image(&vector, &group.irradiance(&vector)), vector }
     }
 
-    /// The other margin in the channels in which it holds.
+    /// `better` in the channels in which it is valid, otherwise this margin.
     fn or_better(self, better: Self) -> Self {
         let holds = |c: usize| {
             let mut pairs = better.image.iter().zip(&better.vector);
@@ -67,24 +67,25 @@ impl Margin {
         Self { vector: choose(self.vector, &better.vector), image: choose(self.image, &better.image) }
     }
 
-    /// Whether w = 1 does: no element loses much less than the mean.
+    /// Whether w = 1 suffices: no (A w)_i is much smaller than the mean.
     fn is_even(&self) -> bool {
         let count = self.image.len().max(1) as f64;
         (0..3).all(|c| {
             let least = self.image.iter().map(|aw| aw[c]).fold(f64::INFINITY, f64::min);
             let mean = self.image.iter().map(|aw| aw[c]).sum::<f64>() / count;
-            least >= UNEVEN * mean
+            least >= MIN_LOSS_SHARE * mean
         })
     }
 
-    /// No radiosity is further than this from the solution, W/m², channel by channel; infinite where nothing can be proved.
+    /// Upper bound on the distance of any radiosity from the solution, W/m², channel by channel; infinite where no
+    /// bound can be proved.
     pub fn bound(&self, residual: &[Rgb], radiosity: &[Rgb]) -> Rgb {
         times(self.factor_of(&sizes(residual, radiosity)), largest(&self.vector))
     }
 
-    /// The same from a few bounces of what is missed: with s = |r|, from A⁻¹s = s + A⁻¹ρFs follows
-    /// |B − B̃| ≤ s + ρFs + … + θ w, θ from the last bounce, and bounces are smoother than residuals. Each costs as much as
-    /// computing a residual.
+    /// A sharper bound from a few bounces of the residual: with s = |r|, A⁻¹s = s + A⁻¹ρFs gives |B − B̃| ≤ s + ρFs +
+    /// … + θ w, with θ from the last bounce. Bounces are smoother than residuals. Each bounce costs as much as one
+    /// residual.
     pub fn sharp_bound(&self, group: &Group, residual: &[Rgb], radiosity: &[Rgb]) -> Rgb {
         let mut bounce = sizes(residual, radiosity);
         let mut sum = vec![Rgb::BLACK; bounce.len()];
@@ -97,7 +98,7 @@ impl Margin {
             let factor = self.factor_of(&bounce);
             let found = sum.iter().zip(&self.vector).map(|(&sum, &w)| sum + times(factor, w));
             let found = largest(&found.collect::<Vec<_>>());
-            let pays = (0..3).any(|c| found[c] < WORTH * best[c]);
+            let pays = (0..3).any(|c| found[c] < MIN_IMPROVEMENT_RATIO * best[c]);
             best = Rgb::from_fn(|c| best[c].min(found[c]));
             if !pays {
                 return best;
@@ -105,7 +106,7 @@ impl Margin {
         }
     }
 
-    /// θ with sizes ≤ θ A w.
+    /// The smallest θ with `sizes` ≤ θ A w.
     fn factor_of(&self, sizes: &[Rgb]) -> Rgb {
         let quotient = |size: f64, aw: f64| match size {
             0.0 => 0.0,
@@ -119,34 +120,34 @@ impl Margin {
     }
 }
 
-/// θ w; nothing of nothing, even where w is without bound.
+/// θ w; zero for θ = 0 even where w is infinite.
 fn times(factor: Rgb, w: Rgb) -> Rgb {
     Rgb::from_fn(|c| if factor[c] == 0.0 { 0.0 } else { factor[c] * w[c] })
 }
 
-/// |r| with what rounding may hide of it.
+/// r| plus the part that rounding may hide.
 fn sizes(residual: &[Rgb], radiosity: &[Rgb]) -> Vec<Rgb> {
     let pairs = residual.iter().zip(radiosity);
-    pairs.map(|(r, b)| Rgb::from_fn(|c| r[c].abs() + ROUNDINGS * b[c].abs())).collect()
+    pairs.map(|(r, b)| Rgb::from_fn(|c| r[c].abs() + ROUNDING_SHARE * b[c].abs())).collect()
 }
 
-/// w with |A w − 1| ≤ [`ROUGH`] everywhere; none if that takes too long.
+/// w with |A w − 1| ≤ [`MARGIN_TOLERANCE`] everywhere; none after [`MAX_KRYLOV_SPACES`] Krylov spaces.
 fn solved(group: &Group, coarse: Option<&Coarse>, turns: usize) -> Option<Vec<Rgb>> {
-    let mut sweep = BlockCorrection::new(group, turns, Some(ROUGH / 10.0));
+    let mut correction = BlockCorrection::new(group, turns, Some(MARGIN_TOLERANCE / 10.0));
     let mut times = StepTimes::none(group.scene_instances());
     let mut vector = vec![Rgb::BLACK; group.elements()];
-    let mut missing = vec![Rgb::WHITE; group.elements()];
-    let is_found = |missing: &[Rgb]| largest(missing).into_iter().all(|left| left <= ROUGH);
-    for _ in 0..PATIENCE {
-        let mut space = Space::new(&missing);
-        while !space.is_full() && !is_found(&missing) {
+    let mut residual = vec![Rgb::WHITE; group.elements()];
+    let is_found = |residual: &[Rgb]| largest(residual).into_iter().all(|left| left <= MARGIN_TOLERANCE);
+    for _ in 0..MAX_KRYLOV_SPACES {
+        let mut space = Space::new(&residual);
+        while !space.is_full() && !is_found(&residual) {
             let start = coarse.and_then(|coarse| coarse.correct(space.newest()));
-            let (z, az) = sweep.correct(space.newest(), start, &mut times);
+            let (z, az) = correction.correct(space.newest(), start, &mut times);
             space.add(z, az);
-            missing = space.residual();
+            residual = space.residual();
         }
         vector.iter_mut().zip(space.correction()).for_each(|(w, z)| *w += z);
-        if is_found(&missing) {
+        if is_found(&residual) {
             return Some(vector);
         }
     }

@@ -1,8 +1,8 @@
-//! The coarse space: where light settles that goes to and fro between parts many times. In goes what the equation misses;
-//! out comes a sum of the parts' answers to light from outside that misses the same on average.
+//! The coarse space: corrects light that travels back and forth between parts many times. Input: the residual v.
+//! Output: a sum of the parts' boundary responses whose image under A has the same weighted averages as the residual.
 //!
-//! With the answers as columns of C, y solves (Cᵀ D A C) y = Cᵀ D v, D the areas, and C y starts the parts' own corrections.
-//! Nicolaides 1987 for the idea; Tang, Nabben, Vuik & Erlangga 2009 for the ways to combine the two.
+//! With the responses as columns of C, y solves (Cᵀ D A C) y = Cᵀ D v, with the areas in D; C y starts the parts' own
+//! corrections. Nicolaides 1987 for the idea; Tang, Nabben, Vuik & Erlangga 2009 for the ways to combine the two.
 
 use crate::exchange::groups::{Group, ranges};
 use crate::exchange::system::InstanceSystem;
@@ -11,16 +11,16 @@ use equilux_formats::{Factors, Rgb};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// At most so many unknowns: their dense matrix then costs less than a second.
-const MOST: usize = 1024;
+/// Maximum number of unknowns: their dense matrix then costs less than a second.
+const MAX_UNKNOWNS: usize = 1024;
 
-/// At most so many unknowns a part: as many as parts have answers.
-const ANSWERS: usize = 7;
+/// Maximum number of unknowns of a part: the number of boundary responses that a part has.
+const MAX_PART_UNKNOWNS: usize = 7;
 
-/// Exchanges that block Jacobi would end in this many rounds do without.
-const FEW: f64 = 16.0;
+/// No coarse space is used if block Jacobi would need at most this many rounds.
+const MAX_ROUNDS_WITHOUT: f64 = 16.0;
 
-/// The coarse equation of a group, factored.
+/// The factored coarse equation of a group.
 #[derive(Debug)]
 pub struct Coarse<'a> {
     group: &'a Group<'a>,
@@ -29,22 +29,23 @@ pub struct Coarse<'a> {
     factors: Factors,
 }
 
-/// Whether light goes to and fro so often that a coarse space pays, to `error` of the brightest radiosity, between parts
-/// that return these shares of uniform light from outside. A round of block Jacobi leaves no more than the largest of
-/// them of what uniform light misses.
+/// Whether a coarse space pays off for solving to `error`, relative to the brightest radiosity. `returned`: the share
+/// of uniform light from outside that each part returns, 0..1. A round of block Jacobi reduces the residual of
+/// uniform light to at most the largest of these shares.
 pub fn pays(returned: impl Iterator<Item = Rgb>, error: f64) -> bool {
-    jacobi_rounds(returned.flatten().fold(0.0, f64::max), error) > FEW
+    jacobi_rounds(returned.flatten().fold(0.0, f64::max), error) > MAX_ROUNDS_WITHOUT
 }
 
-/// About how many rounds of block Jacobi it takes to `error` of the brightest radiosity if a round leaves this share.
+/// Approximate number of block Jacobi rounds needed to reach `error`, relative to the brightest radiosity, if each
+/// round leaves this share of the error.
 pub fn jacobi_rounds(share: f64, error: f64) -> f64 {
     if share < 1.0 { error.max(f64::EPSILON).ln() / share.ln() } else { f64::INFINITY }
 }
 
 impl<'a> Coarse<'a> {
-    /// The coarse equation; none if the parts give no answers or are too many.
+    /// The coarse equation; none for fewer than two parts, too many parts, or parts without boundary responses.
     pub fn of(group: &'a Group<'a>) -> Option<Self> {
-        let each = (MOST / group.members.len().max(1)).min(ANSWERS);
+        let each = (MAX_UNKNOWNS / group.members.len().max(1)).min(MAX_PART_UNKNOWNS);
         let unknowns = ranges(group.systems().map(|system| system.answers.radiosity.len().min(each)));
         let size = unknowns.last().map_or(0, |last| last.end);
         if group.members.len() < 2 || size == 0 {
@@ -60,7 +61,7 @@ impl<'a> Coarse<'a> {
             let inside = &answers.matrix[first * count..][..own.len()];
             entries[own.clone()].iter_mut().zip(inside).for_each(|(entry, &own)| *entry += own);
             for channel in (0..3).filter(|&c| inside[first][c] == 0.0) {
-                // An answer that this channel does not have.
+                // This channel does not have the response.
                 entries.iter_mut().for_each(|entry| entry[channel] = 0.0);
                 entries[row][channel] = 1.0;
             }
@@ -75,25 +76,25 @@ impl<'a> Coarse<'a> {
         self.unknowns.last().map_or(0, |last| last.end)
     }
 
-    /// The sum of answers; none if nothing is missed on average. Vectors of the group, W/m².
-    pub fn correct(&self, missing: &[Rgb]) -> Option<Vec<Rgb>> {
+    /// The sum of boundary responses; none if all averages of the residual are zero. Vectors of the group, W/m².
+    pub fn correct(&self, residual: &[Rgb]) -> Option<Vec<Rgb>> {
         let members = || (0..self.group.members.len()).into_par_iter();
-        let missed: Vec<Rgb> = members().flat_map_iter(|m| self.missed_by(m, missing)).collect();
-        if missed.iter().all(|missed| *missed == Rgb::BLACK) {
+        let averages: Vec<Rgb> = members().flat_map_iter(|m| self.weighted_averages(m, residual)).collect();
+        if averages.iter().all(|average| *average == Rgb::BLACK) {
             return None;
         }
-        let shares = solve(&self.factors, &missed);
-        // Where nothing takes light out of the scene, the coarse equation has no solution either.
+        let shares = solve(&self.factors, &averages);
+        // Where nothing removes light from the scene, the coarse equation has no solution either.
         let finite = shares.iter().all(|share| share.iter().all(|share| share.is_finite()));
         finite.then(|| members().flat_map_iter(|m| self.sum_of_answers(m, &shares)).collect())
     }
 
-    /// Σ_i A_i a_i v_i for each answer a of a member.
-    fn missed_by(&self, member: usize, missing: &[Rgb]) -> Vec<Rgb> {
+    /// Σ_i A_i a_i v_i for each response a of a member.
+    fn weighted_averages(&self, member: usize, residual: &[Rgb]) -> Vec<Rgb> {
         let system = self.group.system(member);
-        let missing = &missing[self.group.elements_of(member)];
+        let residual = &residual[self.group.elements_of(member)];
         let product = |answer: &Vec<Rgb>| {
-            let terms = answer.iter().zip(missing).enumerate();
+            let terms = answer.iter().zip(residual).enumerate();
             terms.fold(Rgb::BLACK, |sum, (i, (&a, &v))| {
                 sum + (a * v).map(|av| av * system.clusters.area_of(i))
             })
@@ -111,39 +112,40 @@ impl<'a> Coarse<'a> {
     }
 }
 
-/// Σ_i A_i a_i ρ_i Σ_j F_ij b_j for the answers a of one member and b of all others, by rows; one matrix a member.
+/// Σ_i A_i a_i ρ_i Σ_j F_ij b_j for the responses a of one member and b of all others, row by row; one matrix for
+/// each member.
 fn coupling(group: &Group, unknowns: &[Range<usize>]) -> Vec<Vec<Rgb>> {
-    let sent = |m: usize| -> Vec<[Rgb; ANSWERS]> {
+    let sent = |m: usize| -> Vec<[Rgb; MAX_PART_UNKNOWNS]> {
         let system = group.system(m);
-        let mut sent = vec![[Rgb::BLACK; ANSWERS]; system.clusters.nodes()];
+        let mut sent = vec![[Rgb::BLACK; MAX_PART_UNKNOWNS]; system.clusters.nodes()];
         for (k, answer) in system.answers.radiosity[..unknowns[m].len()].iter().enumerate() {
             sent.iter_mut().zip(system.clusters.means(answer)).for_each(|(sent, mean)| sent[k] = mean);
         }
         sent
     };
-    let sent: Vec<Vec<[Rgb; ANSWERS]>> = (0..unknowns.len()).into_par_iter().map(sent).collect();
+    let sent: Vec<Vec<[Rgb; MAX_PART_UNKNOWNS]>> = (0..unknowns.len()).into_par_iter().map(sent).collect();
     (0..unknowns.len()).into_par_iter().map(|m| received_by(group, m, unknowns, &sent)).collect()
 }
 
-/// The matrix of one member from what all answers send.
+/// The matrix of one member from the radiosity that all responses send.
 fn received_by(
     group: &Group,
     member: usize,
     unknowns: &[Range<usize>],
-    sent: &[Vec<[Rgb; ANSWERS]>],
+    sent: &[Vec<[Rgb; MAX_PART_UNKNOWNS]>],
 ) -> Vec<Rgb> {
     let system = group.system(member);
     let answers = &system.answers.radiosity[..unknowns[member].len()];
     let size = unknowns.last().map_or(0, |last| last.end);
     let mut matrix = vec![Rgb::BLACK; answers.len() * size];
     for rows in 0..system.coupling.groups() {
-        let weights: Vec<[f64; 3 * ANSWERS]> =
+        let weights: Vec<[f64; 3 * MAX_PART_UNKNOWNS]> =
             system.coupling.receivers_of(rows).map(|i| weights(system, answers, i)).collect();
         if weights.iter().flatten().all(|&weight| weight == 0.0) {
             continue;
         }
         let scattered = system.coupling.scatter_group(rows, &weights);
-        // Senders come in order, so those of a member together.
+        // Senders are sorted, so those of one member are adjacent.
         let (mut from, mut rest) = (0, scattered.as_slice());
         while let Some((next, _)) = rest.first() {
             while group.senders_of(from).end <= *next {
@@ -162,13 +164,14 @@ fn received_by(
     matrix
 }
 
-/// Σ_j s_j b_j over senders j of one member, whose first is `first`, for each sum s of receivers and each answer b.
+/// Σ_j s_j b_j over senders j of one member, the first of which is `first`, for each sum s of receivers and each
+/// response b.
 fn products(
-    scattered: &[(usize, [f64; 3 * ANSWERS])],
-    sent: &[[Rgb; ANSWERS]],
+    scattered: &[(usize, [f64; 3 * MAX_PART_UNKNOWNS])],
+    sent: &[[Rgb; MAX_PART_UNKNOWNS]],
     first: usize,
-) -> [[Rgb; ANSWERS]; ANSWERS] {
-    let mut products = [[Rgb::BLACK; ANSWERS]; ANSWERS];
+) -> [[Rgb; MAX_PART_UNKNOWNS]; MAX_PART_UNKNOWNS] {
+    let mut products = [[Rgb::BLACK; MAX_PART_UNKNOWNS]; MAX_PART_UNKNOWNS];
     for (sender, sums) in scattered {
         for (row, &sum) in products.iter_mut().zip(sums.as_chunks::<3>().0) {
             let entries = row.iter_mut().zip(&sent[sender - first]);
@@ -178,9 +181,9 @@ fn products(
     products
 }
 
-/// A_i a_i ρ_i of one element for each answer a.
-fn weights(system: &InstanceSystem, answers: &[Vec<Rgb>], i: usize) -> [f64; 3 * ANSWERS] {
-    let mut weights = [0.0; 3 * ANSWERS];
+/// A_i a_i ρ_i of one element for each response a.
+fn weights(system: &InstanceSystem, answers: &[Vec<Rgb>], i: usize) -> [f64; 3 * MAX_PART_UNKNOWNS] {
+    let mut weights = [0.0; 3 * MAX_PART_UNKNOWNS];
     let reflected = system.optics.reflectance[i].map(|rho| rho * system.clusters.area_of(i));
     let places = weights.as_chunks_mut::<3>().0.iter_mut();
     places.zip(answers).for_each(|(place, answer)| *place = (reflected * answer[i]).0);

@@ -1,7 +1,7 @@
-//! Where the power is after a round: emitted = absorbed + escaped + travelling.
+//! The power balance after a round: emitted = absorbed + escaped + travelling.
 //!
-//! Collocation is exact by rows, not in energy: of what element j sends, Σ_i A_i F_ij / A_j arrives somewhere, which in a
-//! closed scene should be 1 and is so only on average. Whatever does not arrive counts as escaped.
+//! Collocation is exact by rows, not in energy: of the power that element j sends, Σ_i A_i F_ij / A_j arrives. In a
+//! closed scene this should be 1, but it is so only on average. Power that does not arrive counts as escaped.
 
 use crate::exchange::groups::Group;
 use equilux_formats::Rgb;
@@ -13,20 +13,21 @@ use serde::Serialize;
 pub struct Energy {
     /// Σ A E.
     pub emitted: Rgb,
-    /// Of what arrives, what is not reflected.
+    /// Σ A (1 − ρ) H: arriving power that is not reflected.
     pub absorbed: Rgb,
-    /// What leaves elements and arrives nowhere: through openings; where the scene is closed, what collocation costs.
+    /// Power that leaves elements and does not arrive: through openings, or in a closed scene the error of
+    /// collocation.
     pub escaped: Rgb,
-    /// What has arrived and is still to be reflected, Σ A r; negative where more was reflected than arrived.
+    /// Power that has arrived and is not reflected yet, Σ A r; negative where more was reflected than arrived.
     pub travelling: Rgb,
 }
 
-/// The share of what each element sends that arrives in the group.
+/// The share of each element's sent power that arrives in the group.
 #[derive(Debug)]
 pub struct Columns(Vec<f64>);
 
 impl Columns {
-    /// Column sums Σ_i A_i F_ij / A_j, one an element of the group.
+    /// Column sums Σ_i A_i F_ij / A_j, one for each element of the group.
     pub fn of(group: &Group) -> Self {
         let mut arriving = vec![0.0; group.scene_senders()];
         for (m, system) in group.systems().enumerate() {
@@ -45,19 +46,19 @@ impl Columns {
         Self(members.flat_map(|m| shares(group, m, &arriving[group.senders_of(m)])).collect())
     }
 
-    /// The least and the largest.
+    /// The smallest and the largest column sum.
     pub fn range(&self) -> [f64; 2] {
         self.0.iter().fold([f64::INFINITY, 0.0], |[low, high], &sum| [low.min(sum), high.max(sum)])
     }
 
-    /// The account of a state with this radiosity that misses this.
-    pub fn account(&self, group: &Group, radiosity: &[Rgb], missing: &[Rgb]) -> Energy {
+    /// The power balance of a group with this radiosity and residual, both W/m².
+    pub fn account(&self, group: &Group, radiosity: &[Rgb], residual: &[Rgb]) -> Energy {
         let areas = group.systems().flat_map(|system| system.areas.iter().zip(&system.optics.emission));
         let mut energy = Energy::default();
-        for (((&area, emission), share), (b, r)) in areas.zip(&self.0).zip(radiosity.iter().zip(missing)) {
+        for (((&area, emission), share), (b, r)) in areas.zip(&self.0).zip(radiosity.iter().zip(residual)) {
             for c in 0..3 {
                 let (sent, arriving) = (area * b[c], area * b[c] * share);
-                // What an element reflects is what it sends without emitting it, and what it is still to send.
+                // Reflected power is sent power minus emission, plus what the residual still adds.
                 let reflected = sent - area * (emission[c] - r[c]);
                 energy.emitted[c] += area * emission[c];
                 energy.absorbed[c] += arriving - reflected;
@@ -69,18 +70,18 @@ impl Columns {
     }
 }
 
-/// The column sums of a member's elements from the power that arrives of each of its senders.
+/// The column sums of a member's elements from the power that arrives from each of its senders, W.
 fn shares(group: &Group, member: usize, arriving: &[f64]) -> Vec<f64> {
     let system = group.system(member);
     let elements = system.areas.len();
-    // A part's own tree measures area in the part's units.
+    // A part's tree measures areas in the part's units.
     let scale = if elements == 0 { 1.0 } else { system.areas[0] / system.clusters.area_of(0) };
     let mut shares: Vec<f64> = arriving
         .iter()
         .enumerate()
         .map(|(sender, power)| power / (system.clusters.area_of(sender) * scale))
         .collect();
-    // What a cluster sends, each of its elements sends by its area; outer clusters come first.
+    // Each element of a cluster has the cluster's share; outer clusters come first.
     for (cluster, pair) in system.clusters.children().iter().enumerate() {
         pair.iter().for_each(|&child| shares[child as usize] += shares[elements + cluster]);
     }

@@ -1,5 +1,5 @@
-//! The rounds of one group of parts: corrections until the bound asked for is proved. Every method corrects by the same
-//! sweep; they differ in who takes turns and in what is done with the correction.
+//! The rounds of one group of parts: corrections until the required bound is proved. All methods use the same block
+//! correction; they differ in the order of the turns and in how the correction is applied.
 
 use crate::exchange::block_correction::BlockCorrection;
 use crate::exchange::bound::Margin;
@@ -8,77 +8,87 @@ use crate::exchange::energy::Columns;
 use crate::exchange::error_estimate::ErrorEstimate;
 use crate::exchange::groups::Group;
 use crate::exchange::listener::{FinishedRound, Listener};
-use crate::exchange::outcome::Convergence;
-use crate::exchange::outcome::is_shown;
-use crate::exchange::settings::Goal;
-use crate::exchange::settings::Method;
-use crate::exchange::step_times::Overhead;
-use crate::exchange::step_times::StepTimes;
-use crate::exchange::step_times::timed;
+use crate::exchange::outcome::{Convergence, is_shown};
+use crate::exchange::settings::{Goal, Method};
+use crate::exchange::step_times::{Overhead, StepTimes, timed};
 use equilux_bake::equilibrium::krylov::Space;
 use equilux_bake::equilibrium::largest;
 use equilux_bake::monitor::Monitor;
 use equilux_formats::Rgb;
 use std::time::{Duration, Instant};
 
-/// Turns that parts take in a sweep that is to precondition: neighbours mostly hear the newest of each other, and a
-/// quarter of all parts is solved side by side.
-const TURNS: usize = 4;
+/// Number of turns when the block correction is a preconditioner: most neighbours use each other's newest
+/// corrections, and a quarter of all parts is solved in parallel.
+const PRECONDITIONER_TURNS: usize = 4;
 
-/// What a local solver may leave when its answer is only to precondition.
-const ROUGH: f64 = 3e-3;
+/// Share of the sources that a local solver may leave in a preconditioner.
+const PRECONDITIONER_TOLERANCE: f64 = 3e-3;
 
-/// How a group is solved.
+/// The rounds have stalled if the proved bound did not shrink below this share of the previous one.
+const MAX_STALLED_RATIO: f64 = 0.5;
+
+/// Solves the equation of one group.
 pub struct GroupSolver<'a> {
     group: &'a Group<'a>,
     coarse: Option<Coarse<'a>>,
     margin: Margin,
     columns: Columns,
-    sweep: BlockCorrection<'a>,
+    correction: BlockCorrection<'a>,
     krylov: bool,
 }
 
 /// A round of one group.
 pub struct GroupRound {
-    /// What is known after it.
+    /// Error and power balance after it.
     pub estimate: ErrorEstimate,
     /// Wall time.
     pub time: Duration,
-    /// Radiosity after the round, if it is to be shown or was the last.
+    /// Radiosity after the round, W/m², if it is to be drawn or was the last.
     pub radiosity: Option<Vec<Rgb>>,
 }
 
-/// The light of a group in the end. Vectors of the group.
+/// Result for a group. Vectors of the group.
 pub struct GroupOutcome {
     /// W/m².
     pub radiosity: Vec<Rgb>,
     /// W/m².
     pub irradiance: Vec<Rgb>,
-    /// The rounds; none if the light at the start already was within the bound.
+    /// The rounds; empty if the start was already within the bound.
     pub rounds: Vec<GroupRound>,
-    /// What is known of the light in the end.
+    /// Error and power balance of the result.
     pub estimate: ErrorEstimate,
     /// Whether the goal was met.
     pub converged: bool,
-    /// Local equilibria that were not asked for, because nothing shone.
+    /// Number of local solves that were skipped because the sources were zero.
     pub idle: usize,
-    /// Unknowns of the coarse space; none if it was left out.
+    /// Unknowns of the coarse space; 0 if there is none.
     pub coarse: usize,
 }
 
-/// The light of a group on its way to equilibrium.
+/// State of a group during the rounds.
 struct SolverState {
     radiosity: Vec<Rgb>,
-    /// F B, as of when it was last computed anew.
+    /// F B, as of its last recomputation.
     irradiance: Vec<Rgb>,
-    /// E + ρF B − B; tracked from round to round.
-    missing: Vec<Rgb>,
-    /// The light that the Krylov space began with, and the space, if there is to be one.
+    /// The residual E + ρF B − B, updated from round to round.
+    residual: Vec<Rgb>,
+    /// The radiosity at the start of the Krylov space, and the space, for Krylov methods.
     krylov: Option<(Vec<Rgb>, Space)>,
+    /// The relative bound when the residual was last recomputed; infinite before.
+    proved_bound: f64,
+}
+
+/// Error after a round, and whether the rounds can end.
+struct Assessment {
+    estimate: ErrorEstimate,
+    /// Whether the goal is met.
+    converged: bool,
+    /// Whether no further progress is possible.
+    stalled: bool,
 }
 
 impl<'a> GroupSolver<'a> {
-    /// Prepare what the method needs for a group.
+    /// Set up the solver of a group for `method`.
     pub fn new(group: &'a Group<'a>, method: Method, goal: Goal, spent: &mut Overhead) -> Self {
         let count = group.members.len();
         let krylov = matches!(method, Method::Auto | Method::Gmres) && count > 1;
@@ -88,20 +98,21 @@ impl<'a> GroupSolver<'a> {
         let turns = match method {
             Method::Jacobi => 1,
             Method::GaussSeidel => count,
-            Method::Auto | Method::Gmres => TURNS,
+            Method::Auto | Method::Gmres => PRECONDITIONER_TURNS,
         };
-        let margin = timed(&mut spent.margin, || Margin::of(group, coarse.as_ref(), TURNS));
+        let margin = timed(&mut spent.margin, || Margin::of(group, coarse.as_ref(), PRECONDITIONER_TURNS));
         let columns = timed(&mut spent.account, || Columns::of(group));
-        let sweep = BlockCorrection::new(group, turns, krylov.then_some(ROUGH));
-        Self { group, coarse, margin, columns, sweep, krylov }
+        let correction = BlockCorrection::new(group, turns, krylov.then_some(PRECONDITIONER_TOLERANCE));
+        Self { group, coarse, margin, columns, correction, krylov }
     }
 
-    /// Least and largest column sum.
+    /// Smallest and largest column sum.
     pub fn column_sums(&self) -> [f64; 2] {
         self.columns.range()
     }
 
-    /// Rounds from `start`, or from darkness, until the goal is met, no progress is possible, or somebody stops it.
+    /// Run rounds from `start`, or from zero if none, until the goal is met, no further progress is possible, or `monitor` or
+    /// `listener` stops the exchange.
     pub fn run(
         mut self,
         start: Option<Vec<Rgb>>,
@@ -116,104 +127,125 @@ impl<'a> GroupSolver<'a> {
         if is_warm {
             estimate.error_bound = self.sharp_bound(&state, times);
         }
-        let is_last = |rounds: usize| rounds >= goal.rounds || monitor.stopped() || listener.ends_exchange();
+        let must_end = |rounds: usize| rounds >= goal.rounds || monitor.stopped() || listener.ends_exchange();
         let mut converged = is_warm && estimate.is_within(goal.error);
         let mut rounds: Vec<GroupRound> = Vec::new();
-        let mut proved_before = f64::INFINITY;
-        let mut ends = converged || is_last(0);
-        while !ends {
+        let mut is_last = converged || must_end(0);
+        while !is_last {
             let start = Instant::now();
             self.advance(&mut state, times);
-            estimate = self.estimate(&state, times);
-            let settled = estimate.is_rounded() || state.is_full();
-            ends = is_last(rounds.len() + 1);
-            if estimate.is_within(goal.error) || settled || ends {
-                // What was tracked from round to round is computed anew before anything is said to be proved.
-                timed(&mut times.overhead.proving, || self.refresh(&mut state));
-                estimate = self.estimate(&state, times);
-                let stalled = settled && estimate.relative_bound() > 0.5 * proved_before;
-                proved_before = estimate.relative_bound();
-                // All that rounding allows is what an error of zero asks for.
-                converged = estimate.is_within(goal.error) || (stalled && goal.error == 0.0);
-                ends |= converged || stalled;
-            }
-            forget(&mut rounds);
+            is_last = must_end(rounds.len() + 1);
+            let assessment = self.assess(&mut state, goal, is_last, times);
+            is_last |= assessment.converged || assessment.stalled;
+            (estimate, converged) = (assessment.estimate, assessment.converged);
+            drop_hidden(&mut rounds);
             let radiosity = Some(state.radiosity.clone());
             rounds.push(GroupRound { estimate, time: start.elapsed(), radiosity });
             monitor.advance(1);
-            let (number, convergence) = (rounds.len(), Convergence::default().with(&estimate));
-            let (instances, radiosity) = (&self.group.members, &state.radiosity);
             listener.round(&FinishedRound {
-                instances,
-                number,
-                convergence,
+                instances: &self.group.members,
+                number: rounds.len(),
+                convergence: Convergence::default().with(&estimate),
                 times,
-                is_last: ends,
-                radiosity,
+                is_last,
+                radiosity: &state.radiosity,
             });
         }
         if !(is_warm && rounds.is_empty()) {
             estimate.error_bound = self.sharp_bound(&state, times);
         }
-        look_back(&mut rounds, estimate, &state.radiosity);
-        let waiting = self.group.waiting_irradiance(&state.radiosity);
+        improve_estimates(&mut rounds, estimate, &state.radiosity);
+        self.outcome(state, rounds, estimate, converged)
+    }
+
+    fn outcome(
+        &self,
+        state: SolverState,
+        rounds: Vec<GroupRound>,
+        estimate: ErrorEstimate,
+        converged: bool,
+    ) -> GroupOutcome {
+        let skipped = self.group.skipped_irradiance(&state.radiosity);
         GroupOutcome {
-            irradiance: sum(&state.irradiance, &waiting),
+            irradiance: sum(&state.irradiance, &skipped),
             radiosity: state.radiosity,
             rounds,
             estimate,
             converged,
-            idle: self.sweep.idle,
+            idle: self.correction.idle,
             coarse: self.coarse.as_ref().map_or(0, Coarse::unknowns),
         }
+    }
+
+    /// Estimate the error after a round, and decide whether the goal is met or no further progress is possible. The residual
+    /// is recomputed before anything counts as proved.
+    fn assess(
+        &self,
+        state: &mut SolverState,
+        goal: Goal,
+        is_last: bool,
+        times: &mut StepTimes,
+    ) -> Assessment {
+        let estimate = self.estimate(state, times);
+        let settled = estimate.is_rounded() || state.is_full();
+        if !(estimate.is_within(goal.error) || settled || is_last) {
+            return Assessment { estimate, converged: false, stalled: false };
+        }
+        timed(&mut times.overhead.proof, || self.refresh(state));
+        let estimate = self.estimate(state, times);
+        let stalled = settled && estimate.relative_bound() > MAX_STALLED_RATIO * state.proved_bound;
+        state.proved_bound = estimate.relative_bound();
+        // With a required error of 0, the goal is met when rounding prevents further progress.
+        let converged = estimate.is_within(goal.error) || (stalled && goal.error == 0.0);
+        Assessment { estimate, converged, stalled }
     }
 
     fn begin(&self, start: Option<Vec<Rgb>>) -> SolverState {
         let dark = || vec![Rgb::BLACK; self.group.elements()];
         let irradiance = start.as_ref().map_or_else(dark, |start| self.group.irradiance(start));
         let radiosity = start.unwrap_or_else(dark);
-        let missing = self.group.residual(&radiosity, &irradiance);
-        let krylov = self.krylov.then(|| (radiosity.clone(), Space::new(&missing)));
-        SolverState { radiosity, irradiance, missing, krylov }
+        let residual = self.group.residual(&radiosity, &irradiance);
+        let krylov = self.krylov.then(|| (radiosity.clone(), Space::new(&residual)));
+        SolverState { radiosity, irradiance, residual, krylov, proved_bound: f64::INFINITY }
     }
 
-    /// One round: a correction, and what is still missing then.
+    /// One round: apply a correction and update the residual.
     fn advance(&mut self, state: &mut SolverState, times: &mut StepTimes) {
         let Some((base, space)) = &mut state.krylov else {
-            let (z, az) = self.sweep.correct(&state.missing, None, times);
+            let (z, az) = self.correction.correct(&state.residual, None, times);
             state.radiosity = sum(&state.radiosity, &z);
-            state.missing = state.missing.iter().zip(az).map(|(&r, az)| r - az).collect();
+            state.residual = state.residual.iter().zip(az).map(|(&r, az)| r - az).collect();
             return;
         };
         let coarse = || self.coarse.as_ref().and_then(|coarse| coarse.correct(space.newest()));
         let start = timed(&mut times.overhead.krylov, coarse);
-        let (z, az) = self.sweep.correct(space.newest(), start, times);
+        let (z, az) = self.correction.correct(space.newest(), start, times);
         timed(&mut times.overhead.krylov, || {
             space.add(z, az);
             state.radiosity = sum(base, &space.correction());
-            state.missing = space.residual();
+            state.residual = space.residual();
         });
     }
 
-    /// Compute from the radiosity alone what is missing.
+    /// Recompute irradiance and residual from the radiosity.
     fn refresh(&self, state: &mut SolverState) {
         state.irradiance = self.group.irradiance(&state.radiosity);
-        state.missing = self.group.residual(&state.radiosity, &state.irradiance);
-        state.krylov = self.krylov.then(|| (state.radiosity.clone(), Space::new(&state.missing)));
+        state.residual = self.group.residual(&state.radiosity, &state.irradiance);
+        state.krylov = self.krylov.then(|| (state.radiosity.clone(), Space::new(&state.residual)));
     }
 
     fn estimate(&self, state: &SolverState, times: &mut StepTimes) -> ErrorEstimate {
-        timed(&mut times.overhead.judging, || ErrorEstimate {
-            residual: largest(&state.missing),
-            error_bound: self.margin.bound(&state.missing, &state.radiosity),
+        timed(&mut times.overhead.estimates, || ErrorEstimate {
+            residual: largest(&state.residual),
+            error_bound: self.margin.bound(&state.residual, &state.radiosity),
             brightest: largest(&state.radiosity),
-            energy: self.columns.account(self.group, &state.radiosity, &state.missing),
+            energy: self.columns.account(self.group, &state.radiosity, &state.residual),
         })
     }
 
     fn sharp_bound(&self, state: &SolverState, times: &mut StepTimes) -> Rgb {
-        let bound = || self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
-        timed(&mut times.overhead.proving, bound)
+        let bound = || self.margin.sharp_bound(self.group, &state.residual, &state.radiosity);
+        timed(&mut times.overhead.proof, bound)
     }
 }
 
@@ -223,17 +255,17 @@ impl SolverState {
     }
 }
 
-/// Drop the light of the last round if it is not to be shown: another follows.
-fn forget(rounds: &mut [GroupRound]) {
+/// Drop the radiosity of the last round if it is not drawn, since another round follows.
+fn drop_hidden(rounds: &mut [GroupRound]) {
     let number = rounds.len();
     if let Some(last) = rounds.last_mut().filter(|_| !is_shown(number)) {
         last.radiosity = None;
     }
 }
 
-/// The last round gets what is known of its light in the end. Later light tells how far earlier light was off:
-/// |B − B_n| ≤ |B − B_N| + |B_N − B_n|.
-fn look_back(rounds: &mut [GroupRound], estimate: ErrorEstimate, light: &[Rgb]) {
+/// Improve the estimates of all rounds by the final result. The last round gets the final estimate; earlier rounds
+/// are bounded by |B − B_n| ≤ |B − B_N| + |B_N − B_n|.
+fn improve_estimates(rounds: &mut [GroupRound], estimate: ErrorEstimate, light: &[Rgb]) {
     let Some(last) = rounds.last_mut() else { return };
     last.estimate = estimate;
     let proved = estimate.error_bound;

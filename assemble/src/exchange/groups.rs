@@ -1,5 +1,5 @@
-//! Which parts exchange light at all. In go the parts' couplings; out come groups of parts between which no light passes:
-//! each is an equation of its own, with its own brightest radiosity and its own end.
+//! Groups of parts that exchange light. Input: the parts' couplings. Output: groups without light between them. Each
+//! group is an equation of its own, with its own brightest radiosity and its own end of the rounds.
 
 use crate::exchange::active_rows::ActiveRows;
 use crate::exchange::system::InstanceSystem;
@@ -19,7 +19,7 @@ pub struct Group<'a> {
     elements: Vec<Range<usize>>,
     /// Where each member's senders lie among those of the whole scene.
     senders: Vec<Range<usize>>,
-    /// For each member the members that it receives from.
+    /// For each member, the members that it receives light from.
     pub sees: Vec<Vec<usize>>,
     active: Vec<ActiveRows>,
     scene_senders: usize,
@@ -36,7 +36,7 @@ pub fn groups<'a>(systems: &'a [InstanceSystem<'a>]) -> Vec<Group<'a>> {
     sets.into_sets().into_iter().map(|members| Group::of(systems, members, &senders, &sees)).collect()
 }
 
-/// The instances that a node receives from.
+/// The instances that an instance receives light from.
 fn seen_by(system: &InstanceSystem, senders: &[Range<usize>]) -> Vec<usize> {
     let mut seen = vec![false; senders.len()];
     for sender in system.coupling.senders_seen() {
@@ -45,7 +45,7 @@ fn seen_by(system: &InstanceSystem, senders: &[Range<usize>]) -> Vec<usize> {
     (0..seen.len()).filter(|&l| seen[l]).collect()
 }
 
-/// Ranges of these lengths, one after the other.
+/// Consecutive ranges of these lengths.
 pub fn ranges(lengths: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
     lengths
         .scan(0, |end, length| {
@@ -74,7 +74,7 @@ impl<'a> Group<'a> {
         }
     }
 
-    /// A member's share of the equation.
+    /// A member's block row of the equation.
     pub fn system(&self, member: usize) -> &'a InstanceSystem<'a> {
         &self.systems[self.members[member]]
     }
@@ -104,25 +104,25 @@ impl<'a> Group<'a> {
         self.systems.len()
     }
 
-    /// Put the radiosity of a member among those of all senders of the scene.
+    /// Write the radiosity of a member's nodes, W/m², into the vector of all senders of the scene.
     pub fn send(&self, member: usize, radiosity: &[Rgb], all: &mut [Rgb]) {
         all[self.senders_of(member)].copy_from_slice(&self.system(member).clusters.means(radiosity));
     }
 
-    /// Irradiance of a member's elements from all other members, W/m²; zero for those who wait.
+    /// Irradiance of a member's elements from all other members, W/m²; zero for skipped rows.
     pub fn arriving(&self, member: usize, all: &[Rgb]) -> Vec<Rgb> {
         self.active[member].coupled_irradiance(self.system(member), all)
     }
 
-    /// F B, W/m²; zero for those who wait.
+    /// F B, W/m²; zero for skipped rows.
     pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
         self.irradiance_of(&self.active, radiosity)
     }
 
-    /// F B of those who wait, W/m²; zero for all others.
-    pub fn waiting_irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
-        let waiting: Vec<ActiveRows> = self.active.iter().map(ActiveRows::inactive).collect();
-        self.irradiance_of(&waiting, radiosity)
+    /// F B of the skipped rows, W/m²; zero for all others.
+    pub fn skipped_irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
+        let skipped: Vec<ActiveRows> = self.active.iter().map(ActiveRows::inactive).collect();
+        self.irradiance_of(&skipped, radiosity)
     }
 
     fn irradiance_of(&self, active: &[ActiveRows], radiosity: &[Rgb]) -> Vec<Rgb> {
@@ -136,26 +136,26 @@ impl<'a> Group<'a> {
         (0..self.members.len()).flat_map(of).collect()
     }
 
-    /// r = E + ρH − B with the irradiance H of that B, W/m².
+    /// Residual E + ρH − B, W/m², with the irradiance H that belongs to the radiosity B.
     pub fn residual(&self, radiosity: &[Rgb], irradiance: &[Rgb]) -> Vec<Rgb> {
         let emission = self.systems().flat_map(|system| &system.optics.emission);
         emission.zip(self.image(radiosity, irradiance)).map(|(&e, image)| e - image).collect()
     }
 
-    /// B − ρH with the irradiance H of that B, W/m².
+    /// B − ρH, W/m², with the irradiance H that belongs to the radiosity B.
     pub fn image(&self, radiosity: &[Rgb], irradiance: &[Rgb]) -> Vec<Rgb> {
         let reflectance = self.systems().flat_map(|system| &system.optics.reflectance);
         let rows = reflectance.zip(radiosity.iter().zip(irradiance));
         rows.map(|(&rho, (&b, &h))| b - rho * h).collect()
     }
 
-    /// The members' shares of the equation.
+    /// The members' block rows of the equation.
     pub fn systems(&self) -> impl Iterator<Item = &'a InstanceSystem<'a>> {
         self.members.iter().map(|&k| &self.systems[k])
     }
 
-    /// Number of rows that wait for the end.
-    pub fn waiting(&self) -> usize {
-        self.systems().zip(&self.active).map(|(system, active)| active.waiting(system)).sum()
+    /// Number of rows that are skipped until the end.
+    pub fn skipped(&self) -> usize {
+        self.systems().zip(&self.active).map(|(system, active)| active.skipped(system)).sum()
     }
 }

@@ -8,7 +8,7 @@ use equilux_formats::Rgb;
 pub trait Listener: Sync {
     /// A round has finished.
     fn round(&self, _finished: &FinishedRound) {}
-    /// Whether the exchange should end after this round, as the light is good enough.
+    /// Whether the exchange should end after this round because the light is already accurate enough.
     fn ends_exchange(&self) -> bool {
         false
     }
@@ -23,11 +23,11 @@ pub struct FinishedRound<'a> {
     pub number: usize,
     /// Error and energy after it.
     pub convergence: Convergence,
-    /// Time spent so far, all rounds together.
+    /// Time spent so far in all rounds.
     pub times: &'a StepTimes,
-    /// Whether it was their last.
+    /// Whether it was the group's last round.
     pub is_last: bool,
-    /// Radiosity of their elements, W/m², one instance after the other.
+    /// Radiosity of the instances' elements, W/m², one instance after the other.
     pub radiosity: &'a [Rgb],
 }
 

@@ -1,5 +1,5 @@
-//! Parts exchange light until the whole is in equilibrium: steps 5–8 of the paper, round after round. Blocks and optics
-//! in, radiosity out; the exchange knows neither files nor scenes.
+//! The exchange of light between parts until the scene is in equilibrium: rounds of steps 5–8 of the paper. Input:
+//! blocks and optics. Output: radiosity. The exchange does not depend on files or scenes.
 //!
 //! B_k ← (I − ρF_kk)⁻¹ (E_k + ρ Σ_{l≠k} F_kl B_l). Debelov & Sevastyanov, §2.2.
 
@@ -29,11 +29,11 @@ use settings::{Goal, Method};
 use step_times::{StepTimes, timed};
 use system::InstanceSystem;
 
-/// An exchange takes about as much time as this many rows of form factors an element.
+/// Cost of an exchange, in rows of form factors per element, for the progress display.
 pub const ROWS_PER_ELEMENT: f64 = 0.05;
 
-/// Exchange light until the goal is met, no further progress is possible, or `monitor` or `listener` stops it. Starts from
-/// `start`, one vector of radiosities (W/m²) an instance, or from darkness, as the paper does.
+/// Exchange light until the goal is met, no further progress is possible, or `monitor` or `listener` stops it. Starts
+/// from `start`, one vector of radiosities (W/m²) for each instance, or from zero, as the paper does.
 pub fn exchange(
     systems: &[InstanceSystem],
     method: Method,
@@ -53,8 +53,8 @@ pub fn exchange(
         let start = start.map(|start| group.members.iter().flat_map(|&k| start[k].clone()).collect());
         let outcome = solver.run(start, goal, &mut times, monitor, listener);
         let without = method == Method::Auto && group.members.len() > 1 && outcome.coarse == 0;
-        scene.spared.black_rows += group.waiting();
-        scene.spared.coarse_spaces += usize::from(without);
+        scene.skipped.black_rows += group.skipped();
+        scene.skipped.coarse_spaces += usize::from(without);
         scene.add(&group.members, column_sums, outcome);
     }
     scene.outcome(times)

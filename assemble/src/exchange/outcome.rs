@@ -6,71 +6,70 @@ use crate::exchange::step_times::StepTimes;
 use equilux_formats::Rgb;
 use std::time::Duration;
 
-/// The light in the end.
+/// Result of an exchange.
 #[derive(Debug)]
 pub struct Outcome {
-    /// Radiosity of all elements.
+    /// Radiosity of all elements, W/m².
     pub radiosity: Vec<Rgb>,
-    /// Irradiance of all elements.
+    /// Irradiance of all elements, W/m².
     pub irradiance: Vec<Rgb>,
-    /// The rounds; none if the light to start from already was within the bound.
+    /// The rounds; empty if the start was already within the bound.
     pub rounds: Vec<Round>,
-    /// What is known of the light in the end.
+    /// Error and power balance of the result.
     pub convergence: Convergence,
-    /// Where time went.
+    /// Time spent.
     pub times: StepTimes,
     /// Whether the goal was met.
     pub converged: bool,
-    /// What the rounds did not have to do.
-    pub spared: Spared,
+    /// Work that the rounds skipped.
+    pub skipped: SkippedWork,
     /// Unknowns of the coarse space, all groups together.
     pub coarse_unknowns: usize,
     /// Number of groups of parts that exchange no light with each other.
     pub groups: usize,
-    /// Least and largest share of what an element sends that arrives somewhere.
+    /// Smallest and largest share of an element's sent power that arrives.
     pub column_sums: [f64; 2],
 }
 
-/// What changes no radiosity and was left out of the rounds.
+/// Work that was skipped because it changes no radiosity.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Spared {
-    /// Rows of black receivers, gathered once in the end.
+pub struct SkippedWork {
+    /// Rows of black receivers, gathered once at the end.
     pub black_rows: usize,
-    /// Local equilibria of instances in which nothing shone, all rounds together.
+    /// Local solves that were skipped because no light arrived, in all rounds.
     pub dark_solves: usize,
-    /// Coarse spaces of groups of parts that return so little light that few rounds do without.
+    /// Groups without a coarse space because their parts return so little light that few rounds suffice.
     pub coarse_spaces: usize,
 }
 
-/// What a round left behind. Parts that exchange no light with each other have rounds of their own, which are counted
-/// together.
+/// One round. Groups that exchange no light with each other have their own rounds, which are counted together.
 #[derive(Debug, Clone)]
 pub struct Round {
     /// 1 for the first.
     pub number: usize,
-    /// What is known of the light after it.
+    /// Error and power balance after it.
     pub convergence: Convergence,
     /// Wall time of the round.
     pub time: Duration,
-    /// Radiosity of all elements after the round, if there is to be a picture of it.
+    /// Radiosity of all elements after the round, W/m², if it is to be drawn.
     pub radiosity: Option<Vec<Rgb>>,
 }
 
-/// What is known of light on its way to equilibrium.
+/// Error and power balance during an exchange.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Convergence {
     /// Largest residual, W/m².
     pub residual: f64,
-    /// No radiosity is further than this from the solution with the form factors as they are kept, W/m².
+    /// Upper bound on the distance of any radiosity from the solution with the stored form factors, W/m².
     pub error_bound: f64,
-    /// The bound over the brightest radiosity of the same group of parts and the same channel, the worst of all.
+    /// The bound relative to the brightest radiosity of the same group and channel; the worst of all.
     pub relative_bound: f64,
-    /// Where the power is.
+    /// Power balance, W.
     pub energy: Energy,
 }
 
 impl Convergence {
-    /// The same with another group of parts.
+    /// Combined with the estimate of another group.
     pub fn with(mut self, estimate: &ErrorEstimate) -> Self {
         self.residual = estimate.residual.into_iter().fold(self.residual, f64::max);
         self.error_bound = estimate.error_bound.into_iter().fold(self.error_bound, f64::max);
@@ -80,7 +79,7 @@ impl Convergence {
     }
 }
 
-/// Whether there is to be a picture of this round even if it is not the last: of the first eight, then of powers of two.
+/// Whether this round is drawn even if it is not the last: the first eight, then powers of two.
 pub fn is_shown(round: usize) -> bool {
     round <= 8 || round.is_power_of_two()
 }

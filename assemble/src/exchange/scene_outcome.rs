@@ -1,48 +1,44 @@
-//! The light of all groups of parts together. In go the outcomes of the groups; out comes that of the scene, its rounds
-//! those of all groups counted together.
+//! Combines the outcomes of all groups into the outcome of the scene, whose rounds count the rounds of all groups
+//! together.
 
 use crate::exchange::error_estimate::ErrorEstimate;
 use crate::exchange::group_solver::GroupOutcome;
 use crate::exchange::groups::ranges;
-use crate::exchange::outcome::Convergence;
-use crate::exchange::outcome::Outcome;
-use crate::exchange::outcome::Round;
-use crate::exchange::outcome::Spared;
-use crate::exchange::outcome::is_shown;
+use crate::exchange::outcome::{Convergence, Outcome, Round, SkippedWork, is_shown};
 use crate::exchange::step_times::StepTimes;
 use crate::exchange::system::InstanceSystem;
 use equilux_formats::Rgb;
 use std::ops::Range;
 
-/// What is gathered from group to group.
+/// Accumulates the outcomes of groups.
 pub struct SceneOutcome {
     /// Where each instance's elements lie among all.
     places: Vec<Range<usize>>,
     solved: Vec<(Vec<usize>, GroupOutcome)>,
     column_sums: [f64; 2],
-    /// What was left out.
-    pub spared: Spared,
+    /// Work that was skipped.
+    pub skipped: SkippedWork,
 }
 
 impl SceneOutcome {
-    /// No group yet.
+    /// An empty accumulator.
     pub fn new(systems: &[InstanceSystem]) -> Self {
         Self {
             places: ranges(systems.iter().map(|system| system.areas.len())),
             solved: vec![],
             column_sums: [f64::INFINITY, 0.0],
-            spared: Spared::default(),
+            skipped: SkippedWork::default(),
         }
     }
 
-    /// Take in the outcome of a group with these instances.
+    /// Add the outcome of a group with these instances.
     pub fn add(&mut self, members: &[usize], [low, high]: [f64; 2], outcome: GroupOutcome) {
         self.column_sums = [self.column_sums[0].min(low), self.column_sums[1].max(high)];
-        self.spared.dark_solves += outcome.idle;
+        self.skipped.dark_solves += outcome.idle;
         self.solved.push((members.to_vec(), outcome));
     }
 
-    /// All of it.
+    /// The outcome of the scene.
     pub fn outcome(self, times: StepTimes) -> Outcome {
         let outcomes = || self.solved.iter().map(|(_, outcome)| outcome);
         let count = outcomes().map(|outcome| outcome.rounds.len()).max().unwrap_or(0);
@@ -53,14 +49,14 @@ impl SceneOutcome {
             convergence: self.convergence(|outcome| &outcome.estimate),
             times,
             converged: outcomes().all(|outcome| outcome.converged),
-            spared: self.spared,
+            skipped: self.skipped,
             coarse_unknowns: outcomes().map(|outcome| outcome.coarse).sum(),
             groups: self.solved.len(),
             column_sums: self.column_sums,
         }
     }
 
-    /// The `number`th round of all groups; a group that has ended stays as it is.
+    /// The `number`th round of all groups; a group that has ended keeps its last state.
     fn round(&self, number: usize, is_last: bool) -> Round {
         let rounds = self.solved.iter().filter_map(|(_, outcome)| outcome.rounds.get(number - 1));
         let light = (is_last || is_shown(number)).then(|| {
@@ -85,7 +81,7 @@ impl SceneOutcome {
             .fold(Convergence::default(), |convergence, (_, outcome)| convergence.with(of(outcome)))
     }
 
-    /// One vector of the scene from one of each group.
+    /// One vector of the scene from one vector of each group.
     fn joined<'a>(&'a self, of: impl Fn(&'a GroupOutcome) -> &'a Vec<Rgb>) -> Vec<Rgb> {
         let mut all = vec![Rgb::BLACK; self.places.last().map_or(0, |last| last.end)];
         for (members, outcome) in &self.solved {

@@ -4,24 +4,23 @@
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Method {
-    /// GMRES, with a coarse space where parts return much light
+    /// GMRES, with a coarse space if parts return much light
     Auto,
-    /// Block Jacobi, the paper's form: all parts at once, each with the light of the round before
+    /// Block Jacobi, the paper's form: all parts at once, each with the light of the previous round
     Jacobi,
     /// Block Gauss-Seidel: one part after the other, with the newest light
     GaussSeidel,
-    /// Flexible GMRES, preconditioned by block Gauss-Seidel and always by a coarse space of the parts' answers to light from
-    /// outside
+    /// Flexible GMRES, preconditioned by block Gauss-Seidel and always by a coarse space
     Gmres,
 }
 
-/// When to stop.
+/// When the exchange ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// The error bound asked for, relative to the brightest radiosity in each channel of each group of parts that exchange
-    /// light; 0 asks for all that rounding allows.
+    /// The required error bound, relative to the brightest radiosity in each channel of each group of parts that
+    /// exchange light; 0 continues until rounding.
     pub error: f64,
-    /// At most this many rounds.
+    /// Maximum number of rounds.
     pub rounds: usize,
 }
 

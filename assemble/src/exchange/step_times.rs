@@ -1,4 +1,4 @@
-//! Where the time of an exchange goes.
+//! Time spent in the steps of an exchange.
 
 use std::time::{Duration, Instant};
 
@@ -13,39 +13,39 @@ pub struct StepTimes {
     pub overhead: Overhead,
 }
 
-/// Wall time of what the exchange does beside the paper's steps.
+/// Wall time of the exchange outside the paper's steps.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Overhead {
-    /// Finding groups of parts, and the column sums of the energy account; once.
+    /// Finding groups of parts, and the column sums of the power balance; once.
     pub account: Duration,
     /// Setting up the coarse space; once.
     pub coarse: Duration,
-    /// Finding the vector that the bound needs; once.
+    /// Computing the margin of the error bound; once.
     pub margin: Duration,
     /// Coarse corrections and the Krylov space; all rounds.
     pub krylov: Duration,
-    /// Bounds and energy accounts; all rounds.
-    pub judging: Duration,
-    /// Residuals computed anew, and the last, sharper bound.
-    pub proving: Duration,
+    /// Bounds and power balances; all rounds.
+    pub estimates: Duration,
+    /// Recomputed residuals, and the final, sharper bound.
+    pub proof: Duration,
 }
 
 impl Overhead {
-    /// All of it.
+    /// The sum.
     pub fn total(&self) -> Duration {
-        self.account + self.coarse + self.margin + self.krylov + self.judging + self.proving
+        self.account + self.coarse + self.margin + self.krylov + self.estimates + self.proof
     }
 }
 
 impl StepTimes {
-    /// No time in so many instances.
+    /// Zero times for this many instances.
     pub fn none(instances: usize) -> Self {
         let none = vec![Duration::ZERO; instances];
         Self { solve: none.clone(), transfer: none, overhead: Overhead::default() }
     }
 }
 
-/// Do some work and add the time it takes to `total`.
+/// Run `work` and add its wall time to `total`.
 pub fn timed<T>(total: &mut Duration, work: impl FnOnce() -> T) -> T {
     let start = Instant::now();
     let done = work();

@@ -3,26 +3,26 @@
 use equilux_bake::equilibrium::LocalSystem;
 use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
 
-/// One instance's share of the equation.
+/// One instance's block row of the equation.
 #[derive(Debug)]
 pub struct InstanceSystem<'a> {
-    /// Reflectance and emission in this place.
+    /// Reflectance and emission of the instance.
     pub optics: Optics,
     /// F_kk in the scene.
     pub self_block: &'a Rows,
     /// The hierarchy of the part's elements.
     pub clusters: &'a ClusterTree,
-    /// F_kl for l ≠ k; columns count through all nodes of the scene.
+    /// F_kl for l ≠ k; columns count all nodes of the scene.
     pub coupling: &'a Rows,
-    /// Solves the instance on its own.
+    /// The local solver of the instance.
     pub local: LocalSystem<'a>,
-    /// How it answers light from outside.
+    /// Boundary responses: radiosities caused by light from outside.
     pub answers: &'a Answers,
     /// Area of its elements in the scene, m².
     pub areas: Vec<f64>,
 }
 
-/// r = E + ρH − B with the irradiance H of that B, W/m², one vector an instance.
+/// Residual E + ρH − B, W/m², one vector for each instance, with the irradiance H that belongs to the radiosity B.
 pub fn residual(
     systems: &[InstanceSystem],
     radiosity: &[Vec<Rgb>],

@@ -163,13 +163,13 @@ fn blocks(sources: &ReportSources) -> Blocks {
 }
 
 fn left_out(unseen: usize, sources: &ReportSources) -> BTreeMap<String, usize> {
-    let spared = sources.outcome.spared;
+    let skipped = sources.outcome.skipped;
     let shared = sources.equation.placed.instances.len() - sources.equation.placed.parts.len();
     let counts = [
         (UNSEEN, unseen),
-        (BLACK_ROWS, spared.black_rows),
-        (DARK_SOLVES, spared.dark_solves),
-        (COARSE_SPACES, spared.coarse_spaces),
+        (BLACK_ROWS, skipped.black_rows),
+        (DARK_SOLVES, skipped.dark_solves),
+        (COARSE_SPACES, skipped.coarse_spaces),
         (SHARED, shared),
     ];
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
