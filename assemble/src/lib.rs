@@ -1,17 +1,18 @@
-//! Parts in their places → who interacts → coupling blocks → exchange until equilibrium → lightmaps, pictures and a report.
+//! Assembles scenes from baked parts: placed parts → coupling blocks → exchange of light until equilibrium →
+//! lightmaps, pictures and a report.
 //!
-//! [`solve`] lights a scene in memory; [`run`] also writes outputs and reports; [`plan`] says what a run would compute. The
-//! wings of the crate, from the ground up:
+//! [`solve`] lights a scene in memory; [`run`] also writes outputs and a report; [`plan`] is a dry run. The modules,
+//! from the lowest layer to the highest:
 //!
 //! 1. `exchange` solves the radiosity equation of coupled parts: blocks and optics in, radiosity out.
-//! 2. `gather` evaluates light at any point, and knows lamps, suns and the sky.
-//! 3. `equation` makes the equation of a scene: parts baked and placed, coupling blocks, light from outside.
+//! 2. `gather` evaluates light at any point, including that of lamps, suns and the sky.
+//! 3. `equation` builds the equation of a scene: baked and placed parts, coupling blocks, light from outside.
 //! 4. `proof` bounds the error; `verify` and `statistics` compare with the classic matrix.
-//! 5. `solve` runs these for a scene.
+//! 5. `solve` combines these for a scene.
 //! 6. `picture`, `lightmap` and `outputs` write the light; `report` describes the run.
-//! 7. `run` does all of it for a job; `cli` and `live` are its front ends, `classic` and `sweep` its laboratory.
+//! 7. `run` executes a job; `cli` and `live` are its front ends; `classic` and `sweep` measure and compare.
 //!
-//! The modules are public for the tests of the workspace, but hidden; the names below are the library's face.
+//! The modules are public for the tests of the workspace, but hidden; the names below are the library's interface.
 
 #[cfg(feature = "cli")]
 #[doc(hidden)]

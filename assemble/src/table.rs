@@ -1,23 +1,23 @@
-//! Tables of numbers that people give: comma-separated values, with the names of the columns on the first line. In goes a file;
-//! out come its columns by name.
+//! Tables of numbers in comma-separated values, with column names on the first line. Input: a file. Output: columns
+//! by name.
 
 use csv::StringRecord;
 use equilux_formats::{Error, Result, Rgb};
 use std::path::Path;
 
-/// A table that was read. Columns that nobody asks for may hold anything.
+/// A table that was read. Columns that are not requested may hold anything.
 #[derive(Debug)]
 pub struct Table<'a> {
     file: &'a Path,
-    /// What a person is told that the file should hold, and what to do.
+    /// The expected contents and the remedy, for error messages.
     expected: [&'a str; 2],
     header: StringRecord,
     lines: Vec<StringRecord>,
 }
 
 impl<'a> Table<'a> {
-    /// Read a file; `expected` tells what it should hold, and what to do if it does not. Fails if it cannot be read or has no
-    /// line but the first.
+    /// Read a file. `expected`: the expected contents and the remedy, for error messages. Fails if the file cannot be
+    /// read or has no lines after the first.
     pub fn read(file: &'a Path, expected: [&'a str; 2]) -> Result<Self> {
         let mut table = Self { file, expected, header: StringRecord::new(), lines: vec![] };
         let unreadable = |error: csv::Error| table.wrong(format!("cannot be read ({error})"));
@@ -32,12 +32,12 @@ impl<'a> Table<'a> {
         Ok(table)
     }
 
-    /// Whether there is a column of this name.
+    /// Whether the table has a column of this name.
     pub fn has(&self, name: &str) -> bool {
         self.place(name).is_some()
     }
 
-    /// A column. Fails if there is none, or if it holds what is no finite number.
+    /// The numbers of a column. Fails if there is no such column, or if a value is not a finite number.
     pub fn numbers(&self, name: &str) -> Result<Vec<f64>> {
         let place = self.place(name).ok_or_else(|| self.wrong(format!("has no column {name}")))?;
         let number = |(row, line): (usize, &StringRecord)| {
@@ -48,19 +48,19 @@ impl<'a> Table<'a> {
         self.lines.iter().enumerate().map(number).collect()
     }
 
-    /// The colours in three columns. Fails as [`Table::vectors`] does.
+    /// Three columns as colours. Fails as [`Table::vectors`] does.
     pub fn colours(&self, names: [&str; 3]) -> Result<Vec<Rgb>> {
         Ok(self.vectors(names)?.into_iter().map(Rgb).collect())
     }
 
-    /// Three columns, line by line. Fails as one does.
+    /// Three columns as vectors, line by line. Fails as [`Table::numbers`] does.
     pub fn vectors(&self, names: [&str; 3]) -> Result<Vec<[f64; 3]>> {
         let [x, y, z] = names.map(|name| self.numbers(name));
         let (x, y, z) = (x?, y?, z?);
         Ok((0..x.len()).map(|row| [x[row], y[row], z[row]]).collect())
     }
 
-    /// The error of a line, counted from 0 below the first.
+    /// The error of a line; `row` counts from 0 after the first line.
     pub fn wrong_line(&self, row: usize, found: &str) -> Error {
         self.wrong(format!("line {} {found}", row + 2))
     }

@@ -1,4 +1,4 @@
-//! The classic matrix radiosity of the whole scene, on the same elements: what the parts must agree with.
+//! Classic matrix radiosity of the whole scene on the same elements, for comparison with the solution by parts.
 
 use crate::placed_parts::PlacedParts;
 use crate::proof::exact_rows::ROWS_PER_EXACT_ROW;
@@ -8,10 +8,10 @@ use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_formats::{ClusterTree, Optics, Result, Rgb, Rows};
 use std::time::{Duration, Instant};
 
-/// The whole-scene answer and what it took.
+/// The solution of the whole-scene matrix, and its cost.
 #[derive(Debug)]
 pub struct Classic {
-    /// Radiosity of all elements.
+    /// Radiosity of all elements, W/m².
     pub radiosity: Vec<Rgb>,
     /// The whole matrix.
     pub matrix: Rows,
@@ -21,8 +21,8 @@ pub struct Classic {
     pub solve_time: Duration,
 }
 
-/// Compute the whole matrix at once and solve it at once. Fails if the monitor was stopped.
-/// `optics` are those of all elements, emission with all that drives the exchange.
+/// Compute the whole matrix and solve it directly. `optics`: those of all elements, with all light that drives the
+/// exchange as emission. Fails if the monitor was stopped.
 pub fn classic(placed: &PlacedParts, optics: &Optics, monitor: &Monitor) -> Result<Classic> {
     let (matrix, form_factor_time) = whole_matrix(placed, monitor)?;
     let start = Instant::now();
@@ -36,7 +36,7 @@ pub fn classic(placed: &PlacedParts, optics: &Optics, monitor: &Monitor) -> Resu
     Ok(Classic { radiosity, form_factor_time, solve_time: start.elapsed(), matrix })
 }
 
-/// Every form factor of the scene, element by element.
+/// The form factors of all pairs of elements.
 fn whole_matrix(placed: &PlacedParts, monitor: &Monitor) -> Result<(Rows, Duration)> {
     let world = &placed.world;
     let element: Vec<u32> =

@@ -1,7 +1,7 @@
-//! The blocks between parts, and a part's own block where something foreign stands inside it.
+//! The blocks between parts, and the corrected self block of a part that contains other geometry.
 //!
-//! For each instance k: F_kl for all other instances l, as one block whose columns count through all nodes of the
-//! scene; and F_kk as baked, or computed anew with the intruders in place. Everything in the scene blocks.
+//! For each instance k: F_kl for all other instances l, as one block whose columns count all nodes of the scene, and
+//! F_kk, as baked or recomputed with the intruders present. All geometry of the scene occludes.
 
 use crate::equation::intruders::intruders;
 use crate::equation::stale_block::StaleBlock;
@@ -18,33 +18,33 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Duration;
 
-/// What an instance exchanges light through.
+/// The blocks of an instance.
 #[derive(Debug)]
 pub struct Coupled {
     /// F_kl for all l ≠ k, `elements of k × all nodes of the scene`.
     pub coupling: Rows,
-    /// Where the coupling came from.
+    /// Whether the coupling was computed or reused, and why.
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
     /// The same, receiver by receiver; empty if there were none.
     pub computed_by_row: Vec<u32>,
-    /// F_kk with what stands inside the part, if anything does.
+    /// F_kk with the intruders, if there are any.
     pub corrected: Option<Corrected>,
     /// Time spent on form factors of the coupling, summed over threads.
     pub time: Duration,
 }
 
-/// A self block that is not the baked one.
+/// The self block of an instance with intruders.
 #[derive(Debug)]
 pub struct Corrected {
-    /// F_kk inside the scene.
+    /// F_kk with the intruders.
     pub self_block: Rows,
-    /// The equilibrium with the intruders there, and the factors of the new matrix.
+    /// The local equilibrium with the intruders, and the factors of the corrected matrix.
     pub local: LocalEquilibrium,
     /// The instances that stand inside.
     pub intruders: Vec<usize>,
-    /// Where the block came from.
+    /// Whether the block was computed or reused, and why.
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
@@ -54,59 +54,59 @@ pub struct Corrected {
     pub time: Duration,
 }
 
-/// Where the blocks of an instance would come from.
+/// Which blocks of an instance a run would compute or reuse, and why.
 #[derive(Debug)]
 pub struct ForeseenBlocks {
     /// The instances that stand inside.
     pub intruders: Vec<usize>,
-    /// The origin of the self block with what stands inside, if anything does.
+    /// The origin of the self block with the intruders, if there are any.
     pub corrected: Option<Origin>,
     /// The origin of the coupling.
     pub coupling: Origin,
 }
 
 impl Coupled {
-    /// The block that instance's own light goes through.
+    /// The self block in force: the corrected one, or else `baked`.
     pub fn self_block<'a>(&'a self, baked: &'a Rows) -> &'a Rows {
         self.corrected.as_ref().map_or(baked, |c| &c.self_block)
     }
 
-    /// The equilibrium of the block that is in force.
+    /// The local equilibrium in force: the corrected one, or else `baked`.
     pub fn local<'a>(&'a self, baked: &'a LocalEquilibrium) -> &'a LocalEquilibrium {
         self.corrected.as_ref().map_or(baked, |c| &c.local)
     }
 }
 
-/// How many instances of the same part are compared with one, to find whose block is nearest to its own.
-const TWINS: usize = 8;
+/// Number of instances of the same part that are compared to find the most similar surroundings.
+const MAX_TWIN_CANDIDATES: usize = 8;
 
-/// Computes what couples the instances of a scene, or takes it from the cache.
+/// Computes the blocks of a scene's instances, or reads them from the cache.
 #[derive(Debug)]
 pub struct Coupler<'a> {
     /// The scene.
     pub placed: &'a PlacedParts,
     /// The cache.
     pub store: &'a Store,
-    /// The scene's file, for remembering what was coupled last.
+    /// The scene's file, part of the names under which blocks are remembered.
     pub file: &'a Path,
-    /// How exactly form factors are kept.
+    /// Accuracy and storage of form factors.
     pub resolution: Resolution,
-    /// Progress and the wish to stop.
+    /// Progress, and requests to stop.
     pub monitor: &'a Monitor,
 }
 
 impl Coupler<'_> {
-    /// Read at once what the cache has of all blocks and of the light with what stands inside: [`Coupler::couple`] asks for
-    /// one after the other.
+    /// Read in parallel all blocks, and all local equilibria with intruders, that the cache holds;
+    /// [`Coupler::couple`] then requests them one after the other.
     pub fn read_ahead(&self) {
         let key = |k: usize, what: &str| self.store.target(&self.manifest(k, what).key());
         let instances = (0..self.placed.instances.len()).into_par_iter();
         let keys = instances.map(|k| (k, key(k, COUPLING), key(k, CORRECTED))).collect::<Vec<_>>();
-        let older =
+        let stale =
             keys.par_iter().flat_map(|&(k, ..)| [COUPLING, CORRECTED].map(|what| self.last_key(k, what)));
-        let older: Vec<Key> = older.flatten().collect();
+        let stale: Vec<Key> = stale.flatten().collect();
         self.store
-            .read_ahead::<Rows>(&[keys.iter().flat_map(|keys| [keys.1, keys.2]).collect(), older].concat());
+            .read_ahead::<Rows>(&[keys.iter().flat_map(|keys| [keys.1, keys.2]).collect(), stale].concat());
         let lights = keys.par_iter().map(|&(k, _, corrected)| {
             let solver = self.placed.part_of(k).part.local.solver;
             light_manifest(corrected.into(), &self.placed.paint_of(k), solver).key()
@@ -114,7 +114,7 @@ impl Coupler<'_> {
         self.store.read_ahead::<BakedLight>(&lights.collect::<Vec<_>>());
     }
 
-    /// Couple one instance with all others. Fails if the monitor was stopped.
+    /// Compute or read the blocks of one instance. Fails if the monitor was stopped.
     pub fn couple(&self, instance: usize) -> Result<Coupled> {
         let intruders = self.intruders(instance);
         let corrected = if intruders.is_empty() { None } else { Some(self.correct(instance, intruders)?) };
@@ -128,7 +128,7 @@ impl Coupler<'_> {
         Ok(Coupled { coupling, origin, computed, computed_by_row, corrected, time })
     }
 
-    /// Where the blocks of an instance would come from. Computes none of them.
+    /// Which blocks of an instance would be computed or reused, and why. Computes no form factors.
     pub fn foresee(&self, instance: usize) -> ForeseenBlocks {
         let origin = |what: &str| {
             let manifest = self.manifest(instance, what);
@@ -144,12 +144,12 @@ impl Coupler<'_> {
         intruders(&self.placed.instances, |k| &self.placed.part_of(k).part.geometry, instance)
     }
 
-    /// The whole self block anew, with everything that stands inside.
+    /// The self block with everything that stands inside the part.
     fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Corrected> {
         let senders = [instance];
         let request = Request::of_self(&self.placed.world, &senders, self.resolution);
         self.monitor.expect(self.placed.world.elements_of(instance).len() as f64);
-        // The part alone is a scene too: what stands inside appeared in it.
+        // The part's own block is that of a scene into which the intruders were added.
         let part = &self.placed.part_of(instance).part;
         let alone = StaleBlock::alone(self.placed, instance, &intruders);
         let MadeBlock { rows: self_block, origin, computed, computed_by_row, key, time } =
@@ -157,7 +157,7 @@ impl Coupler<'_> {
         if origin.is_reused() {
             self.monitor.spare(self.placed.world.elements_of(instance).len() as f64);
         }
-        // The placed emission is not in the cached light: the scale of an instance costs no equilibrium.
+        // The cached light excludes the emission scale, so changing the scale costs no local solve.
         let optics = self.placed.paint_of(instance);
         let manifest = light_manifest(key.into(), &optics, part.local.solver);
         let name = self.name(instance, "corrected light");
@@ -169,14 +169,14 @@ impl Coupler<'_> {
         Ok(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time })
     }
 
-    /// The block that is asked for: from the cache, or from an older one as far as what changed since cannot matter, or
-    /// from `otherwise`, or from the start.
+    /// A block of an instance: read from the cache, or updated from a stale block where the changes cannot matter, or
+    /// from `fallback`, or computed.
     fn block(
         &self,
         (instance, what): (usize, &str),
         request: Request,
         own: Option<&Rows>,
-        otherwise: Option<StaleBlock>,
+        fallback: Option<StaleBlock>,
     ) -> Result<MadeBlock> {
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
@@ -192,50 +192,50 @@ impl Coupler<'_> {
                 StaleBlock::last(self.placed, self.store, instance, &last, &manifest, request.columns.clone())
             });
             let twin = || self.twin(instance, what, &manifest, request.columns.clone());
-            let older = last.or_else(twin).or(otherwise);
-            let revision = older.as_ref().map(StaleBlock::revision);
-            // A row that is full already sees nothing of other parts: nothing is searched for it.
+            let stale = last.or_else(twin).or(fallback);
+            let revision = stale.as_ref().map(StaleBlock::revision);
+            // A row whose self block already sums to 1 receives nothing from other parts; it is not searched.
             let sums = |own: &Rows| (0..own.receivers()).map(|i| own.row_sum(i)).collect::<Vec<_>>();
             let already = own.map(sums);
             let request = request.with_already(already.as_deref()).with_revision(revision);
             let mut timed = block(&request, self.monitor)?;
             (time, computed) = (timed.time, timed.computed);
             computed_by_row = std::mem::take(&mut timed.computed_by_row);
-            Ok(made(timed, older.as_ref().map(|older| older.key)))
+            Ok(made(timed, stale.as_ref().map(|stale| stale.key)))
         });
         let (rows, origin) = found?;
         let key = self.store.target(&manifest.key());
         Ok(MadeBlock { rows, origin, key, computed, computed_by_row, time })
     }
 
-    /// The block of another instance of the same part that stands among much the same, as if that one were here: what one
-    /// sees of the other's surroundings and the other does not is what changed. Modular levels are full of these.
+    /// The block of another instance of the same part in similar surroundings, as a stale block of this instance: the
+    /// differences between the surroundings count as changes. Modular levels contain many such instances.
     fn twin(
         &self,
         instance: usize,
         what: &str,
-        wanted: &Manifest,
+        current: &Manifest,
         columns: Range<usize>,
     ) -> Option<StaleBlock<'_>> {
         let instances = &self.placed.instances;
         let part = instances[instance].part;
-        let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(TWINS);
-        let parts = self.known();
+        let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(MAX_TWIN_CANDIDATES);
+        let parts = self.part_senders();
         let seen_by = |k: usize| seen_from(instances, &parts, k).map(|(_, seen)| seen);
         let here: HashSet<Seen> = seen_by(instance).collect();
         let common = |l: &usize| seen_by(*l).filter(|seen| here.contains(seen)).count();
         let twin = before.max_by_key(common)?;
         let manifest = self.manifest(twin, what);
-        StaleBlock::last(self.placed, self.store, instance, &manifest, wanted, columns)
+        StaleBlock::last(self.placed, self.store, instance, &manifest, current, columns)
     }
 
-    /// The key under which the last block of this name lies.
+    /// The key of the last block of this name.
     fn last_key(&self, instance: usize, what: &str) -> Option<Key> {
         let last = self.store.last_manifest(&self.name(instance, what))?;
         Some(self.store.target(&last.key()))
     }
 
-    /// What such a block of an instance is called in the cache.
+    /// The cache name of a block of an instance.
     pub fn name(&self, instance: usize, what: &str) -> String {
         let instances = &self.placed.instances;
         let name = &instances[instance].name;
@@ -243,35 +243,36 @@ impl Coupler<'_> {
         format!("{what} of {name} #{twins} in {}", self.file.display())
     }
 
-    /// What the block between the sky and an instance depends on.
+    /// The inputs of the block between the sky and an instance.
     pub fn sky_manifest(&self, instance: usize) -> Manifest {
-        sky_manifest(&self.placed.instances, &self.known(), self.resolution, instance)
+        sky_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance)
     }
 
     fn manifest(&self, instance: usize, what: &str) -> Manifest {
-        placed_manifest(&self.placed.instances, &self.known(), self.resolution, instance, what)
+        placed_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance, what)
     }
 
-    fn known(&self) -> Vec<Known> {
+    fn part_senders(&self) -> Vec<Known> {
         let known = |part: &Baked| Known { key: part.key, senders: part.part.geometry.clusters.nodes() };
         self.placed.parts.iter().map(known).collect()
     }
 }
 
-/// A block and how it came about.
+/// A block and its origin.
 struct MadeBlock {
     rows: Rows,
     origin: Origin,
-    /// The key under which it lies.
+    /// The key of the block in the cache.
     key: Key,
     computed: usize,
     computed_by_row: Vec<u32>,
     time: Duration,
 }
 
-/// What was made: of an older block, if there was one, and of the one under a key, if it is the same column by column.
-fn made(timed: Timed, older: Option<Option<Key>>) -> Made<Rows> {
-    match older {
+/// The cache entry for a computed block: complete, revised from a stale block, or identical to the entry under the
+/// stale block's key.
+fn made(timed: Timed, stale: Option<Option<Key>>) -> Made<Rows> {
+    match stale {
         None => Made::Whole(timed.block),
         Some(Some(key)) if timed.is_unchanged => Made::AsUnder(key, timed.block),
         Some(_) => {

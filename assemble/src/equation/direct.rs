@@ -1,6 +1,6 @@
-//! The irradiance D of a scene's elements from lights that are no elements: parts in their places, lights → D, W/m². Lamps and
-//! suns are averaged over each element, and cost no form factor that is kept; what the sky's
-//! cells are to each element is kept in the cache, so that another sky costs nothing.
+//! The direct irradiance D of a scene's elements from lights that are not elements. Input: placed parts and lights.
+//! Output: D, W/m². The light of lamps and suns is averaged over each element and stores no form factors. Form
+//! factors between elements and the cells of the sky are cached, so a different sky costs no new form factors.
 
 use crate::equation::coupling::Coupler;
 use crate::gather::Gather;
@@ -14,19 +14,19 @@ use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Element, Optics, Result, Rgb, Rows};
 
-/// What lights send to elements.
+/// The direct irradiance of all elements.
 #[derive(Debug)]
 pub struct Direct {
-    /// D, W/m², one vector an instance.
+    /// D, W/m², one vector for each instance.
     pub irradiance: Vec<Vec<Rgb>>,
     /// Form factors computed for the sky.
     pub computed: usize,
-    /// The names of the lamps and suns of which nothing arrives.
+    /// The names of the lamps and suns that light no element.
     pub unlit: Vec<String>,
 }
 
-/// Of a lamp's power this share is nothing: what rounding leaves at the edges of occluders.
-const NOTHING: f64 = 1e-9;
+/// A lamp that delivers no more than this share of its power lights nothing: rounding at the edges of occluders.
+const UNLIT_SHARE: f64 = 1e-9;
 
 /// D of all elements. Fails if the monitor was stopped.
 pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
@@ -59,23 +59,23 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
     Ok(Direct { irradiance, computed, unlit })
 }
 
-/// What arrives of lamps and suns.
+/// Light that arrives from lamps and suns.
 struct LampLight {
-    /// W/m², one an element of the world.
+    /// W/m², one row for each element of the world.
     irradiance: Vec<Rgb>,
-    /// The names of those of which nothing arrives.
+    /// The names of those that light no element.
     unlit: Vec<String>,
 }
 
 impl LampLight {
-    /// Adds the irradiance of these elements from a lamp that could send them at most `power`, W.
+    /// Add the irradiance of these elements, W/m², from a lamp that could send them at most `power`, W.
     fn add(&mut self, name: &str, power: Rgb, elements: &[Element], irradiance: &[Rgb]) {
         let mut arrived = Rgb::BLACK;
         for ((sum, element), &h) in self.irradiance.iter_mut().zip(elements).zip(irradiance) {
             *sum += h;
             arrived += h * element.area;
         }
-        let is_lost = |(arrived, power): (f64, f64)| arrived <= NOTHING * power;
+        let is_lost = |(arrived, power): (f64, f64)| arrived <= UNLIT_SHARE * power;
         if power != Rgb::BLACK && arrived.into_iter().zip(power).all(is_lost) {
             self.unlit.push(name.to_owned());
         }
@@ -105,7 +105,8 @@ fn of_lamps(placed: &PlacedParts, lights: &Lights) -> LampLight {
     arriving
 }
 
-/// The form factors of an instance's elements to the sky's cells, and how many were computed.
+/// The form factors from an instance's elements to the sky's cells, and the number of form factors computed. Fails if
+/// the monitor was stopped.
 fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> Result<(Rows, usize)> {
     let name = coupler.name(instance, "sky");
     let manifest = coupler.sky_manifest(instance);
@@ -116,7 +117,7 @@ fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> R
             world.elements_of(instance).len(),
             world.elements_of(instance).len() as f64,
         );
-        // Every cell has its own light, and every sky its own differences between them.
+        // Clusters are not used: cells differ in radiance, and each sky differs in another way.
         let resolution = Resolution { opening: 0.0, ..coupler.resolution };
         let senders = [sky];
         let request = Request::new(world, Audience::Instance(instance), &senders, resolution)
@@ -128,14 +129,14 @@ fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> R
     Ok((found?.0, computed))
 }
 
-/// The same optics with what elements reflect of D as emission: what drives the exchange.
+/// The optics with emission E + ρD, which drives the exchange.
 pub fn driven(optics: &Optics, direct: &[Rgb]) -> Optics {
     let rows = optics.emission.iter().zip(&optics.reflectance).zip(direct);
     let emission = rows.map(|((&e, &rho), &d)| e + rho * d).collect();
     Optics { emission, reflectance: optics.reflectance.clone() }
 }
 
-/// H with D.
+/// Add D to the irradiance.
 pub fn with_direct(irradiance: &mut [Rgb], direct: &[Vec<Rgb>]) {
     irradiance.iter_mut().zip(direct.iter().flatten()).for_each(|(h, &d)| *h += d);
 }

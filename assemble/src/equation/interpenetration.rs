@@ -1,9 +1,8 @@
-//! Solids that reach into each other: elements that lie inside a closed solid can neither be seen nor be meant. In go parts in
-//! their places, out come sentences.
+//! Elements inside closed solids, which are usually unintended. Input: placed parts. Output: notes for the report.
 //!
-//! Boxes leave few elements to look at. An element is inside if its centroid is, by more than a small share of its own
-//! size, so that what only touches is not; and if most of what it sees from there are the backs of that solid's part: what
-//! stands in a room inside a building's shell is inside that shell too, but sees the room.
+//! Bounding boxes exclude most elements. An element is inside a solid if its centroid lies inside by more than a
+//! small share of its size, so that touching does not count, and if most rays from it meet backs of the solid's
+//! instance. Objects in a room inside a building's shell lie inside the shell too, but see the room.
 
 use crate::placed_parts::PlacedParts;
 use equilux_bake::geometry::aabb::Aabb;
@@ -15,42 +14,42 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 
 /// An element counts as inside when its centroid lies deeper than this share of its size.
-const DEPTH: f64 = 1e-2;
+const MIN_DEPTH_SHARE: f64 = 1e-2;
 
-/// So many elements and pairs of parts are named, more are counted.
-const NAMED: usize = 3;
+/// Number of elements and pairs of parts that are named; the rest are counted.
+const MAX_NAMED: usize = 3;
 
-/// A sentence for each instance with elements inside a solid, of the first few such pairs.
+/// Notes on the first few pairs of instances of which one has elements inside a solid of the other.
 pub fn notes(placed: &PlacedParts) -> Vec<String> {
     let parts: Vec<&Geometry> = placed.parts.iter().map(|part| &part.part.geometry).collect();
     sentences(&elements_inside(&placed.world, &placed.instances, &parts), &placed.instances)
 }
 
-/// Elements that lie inside a solid, numbered through the scene, by their instance and the solid's.
+/// Elements inside a solid, as element numbers of the scene, by instance and instance of the solid.
 pub type Inside = BTreeMap<[usize; 2], Vec<usize>>;
 
-/// A sentence for each of the first few pairs of instances.
+/// A note on each of the first few pairs of instances.
 pub fn sentences(inside: &Inside, instances: &[Instance]) -> Vec<String> {
     let name = |k: usize| format!("`{}`", instances[k].name);
     let sentence = |(&[own, other], elements): (&[usize; 2], &Vec<usize>)| {
-        let named: Vec<String> = elements.iter().take(NAMED).map(usize::to_string).collect();
-        let more = if elements.len() > NAMED { ", …" } else { "" };
+        let named: Vec<String> = elements.iter().take(MAX_NAMED).map(usize::to_string).collect();
+        let more = if elements.len() > MAX_NAMED { ", …" } else { "" };
         let (count, whose) = (elements.len(), if own == other { "itself".into() } else { name(other) });
         let (plural, lie) = if count == 1 { ("", "lies") } else { ("s", "lie") };
         format!(
-            "{count} element{plural} of {} {lie} inside a solid of {whose}: {}{more}; move it out, or cut off what is hidden",
+            "{count} element{plural} of {} {lie} inside a solid of {whose}: {}{more}; move it out, or remove the hidden surfaces",
             name(own),
             named.join(", ")
         )
     };
-    let mut notes: Vec<String> = inside.iter().take(NAMED).map(sentence).collect();
-    if inside.len() > NAMED {
-        notes.push(format!("{} more pairs of parts reach into each other", inside.len() - NAMED));
+    let mut notes: Vec<String> = inside.iter().take(MAX_NAMED).map(sentence).collect();
+    if inside.len() > MAX_NAMED {
+        notes.push(format!("{} more pairs of parts reach into each other", inside.len() - MAX_NAMED));
     }
     notes
 }
 
-/// The elements of a world of instances of `parts` that lie inside solids.
+/// The elements of a world that lie inside solids. `parts`: the geometries of the instances' parts.
 pub fn elements_inside(world: &World, instances: &[Instance], parts: &[&Geometry]) -> Inside {
     let solids: Vec<Vec<Solid>> = parts.iter().map(|part| solids(part)).collect();
     let mut inside = Inside::new();
@@ -79,7 +78,7 @@ struct Search<'a> {
     world: &'a World,
     own: usize,
     other: usize,
-    /// That of `other`.
+    /// The geometry of `other`.
     geometry: &'a Geometry,
     to_part: DAffine3,
 }
@@ -100,20 +99,20 @@ impl Search<'_> {
         if self.own == self.other && solid.faces.binary_search(&self.face_in_part(element)).is_ok() {
             return false;
         }
-        // Areas scale by the square of lengths.
+        // Areas scale with the square of lengths.
         let scale = self.to_part.matrix3.determinant().abs().cbrt();
-        let depth = DEPTH * element.area.sqrt() * scale;
+        let depth = MIN_DEPTH_SHARE * element.area.sqrt() * scale;
         solid.holds(self.to_part.transform_point3(element.centroid), depth, &self.geometry.faces)
     }
 
-    /// The face of an element of `other`, as the part numbers it.
+    /// The face number, within the part, of an element of `other`.
     fn face_in_part(&self, element: &Element) -> u32 {
         let first = self.world.elements[self.world.elements_of(self.other).start].face.0;
         element.face.0 - (first - self.geometry.elements[0].face.0)
     }
 }
 
-/// Whether the box of a solid can meet a box of the scene.
+/// Whether the bounding box of a solid can meet `bounds`, a box in scene coordinates.
 fn overlaps(solid: &Solid, bounds: &Aabb, to_part: DAffine3) -> bool {
     let centre = to_part.transform_point3(bounds.centre());
     let half = bounds.size() / 2.0;
@@ -123,11 +122,12 @@ fn overlaps(solid: &Solid, bounds: &Aabb, to_part: DAffine3) -> bool {
     (centre - reach).cmple(solid.bounds.high).all() && (centre + reach).cmpge(solid.bounds.low).all()
 }
 
-/// Directions from an element: along its normal and leaning to four sides of it, as shares of normal and two tangents.
+/// Ray directions from an element, along the normal and tilted to four sides: coefficients of the normal and two
+/// tangents.
 const DIRECTIONS: [[f64; 3]; 5] =
     [[1.0, 0.013, 0.029], [0.7, 0.6, 0.1], [0.7, -0.1, 0.6], [0.7, -0.6, -0.1], [0.7, 0.1, -0.6]];
 
-/// Whether most of what an element sees are backs of an instance.
+/// Whether most rays from an element meet backs of the instance `other`.
 fn sees_backs(world: &World, index: &RayIndex, number: usize, other: usize) -> bool {
     let element = &world.elements[number];
     let corners = element.corners.as_slice();

@@ -1,14 +1,14 @@
-//! Whether foreign geometry stands inside a part's hull, where it could come between two of the part's own points.
+//! Intruders: other geometry inside a part's hull, which could occlude two points of the part from each other.
 //!
-//! The hull is bounded by pairs of parallel planes in thirteen directions (Klosowski et al. 1998, 26-DOP). It contains
-//! the convex hull, so an intruder is never missed; the cells of a bisection touch it only from outside.
+//! The hull is bounded by pairs of parallel planes in thirteen directions (Klosowski et al. 1998, 26-DOP). It
+//! contains the convex hull, so no intruder is missed; the cells of a bisection touch it only from outside.
 
 use equilux_bake::geometry::polygon::{Side, clip};
 use equilux_bake::geometry::tolerance::FLATNESS;
 use equilux_formats::{Face, Geometry, Instance};
 use glam::{DAffine3, DVec3, dvec3};
 
-/// The instances with geometry inside the hull of one of them.
+/// The instances with geometry inside the hull of `instance`.
 pub fn intruders<'a>(
     instances: &[Instance],
     geometry: impl Fn(usize) -> &'a Geometry,
@@ -30,7 +30,7 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// The hull of a part's faces, drawn in by the tolerance within which faces count as lying in one plane.
+    /// The hull of a part's faces, shrunk by the tolerance of coplanar faces.
     pub fn around(geometry: &Geometry) -> Self {
         let corners = || geometry.faces.iter().flat_map(|face| &face.corners);
         let tolerance = FLATNESS * corners().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -43,7 +43,7 @@ impl Hull {
         Self { slabs: directions().map(slab).to_vec() }
     }
 
-    /// Whether any of `face`, which `to_part` brings into the part's coordinates, lies inside.
+    /// Whether any part of `face`, transformed by `to_part` into the part's coordinates, lies inside.
     pub fn holds(&self, face: &Face, to_part: DAffine3) -> bool {
         let mut rest: Vec<DVec3> = face.corners.iter().map(|&p| to_part.transform_point3(p)).collect();
         for &(direction, low, high) in &self.slabs {

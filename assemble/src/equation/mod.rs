@@ -1,5 +1,5 @@
-//! From a scene to the equation that its light obeys: parts baked and placed, the blocks that couple them, and the light of
-//! lamps, suns and sky. The exchange solves it; gathering evaluates its light anywhere.
+//! The radiosity equation of a scene: baked and placed parts, the blocks that couple them, and the light of lamps,
+//! suns and sky. The exchange solves it; `gather` evaluates its light at any point.
 
 pub mod coupling;
 pub mod direct;
@@ -27,28 +27,28 @@ use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::treecode::Resolution;
 use equilux_formats::{Optics, Result, Rgb, Scene};
 
-/// All that the exchange needs to know of a scene.
+/// The complete equation of a scene.
 #[derive(Debug)]
 pub struct Equation {
-    /// The parts in their places.
+    /// The placed parts.
     pub placed: PlacedParts,
-    /// What couples them, one entry an instance.
+    /// The blocks of each instance.
     pub coupled: Vec<Coupled>,
     /// Optics of all elements.
     pub optics: Optics,
-    /// What shines from outside.
+    /// Lamps, suns and sky.
     pub lights: Lights,
-    /// What of it arrives at elements.
+    /// The direct irradiance of the elements.
     pub direct: Direct,
-    /// Optics of each instance with what its elements reflect of that as emission.
+    /// Optics of each instance with emission E + ρD, with the direct irradiance D.
     pub driven: Vec<Optics>,
-    /// How form factors are kept.
+    /// Accuracy and storage of form factors.
     resolution: Resolution,
 }
 
 impl Equation {
-    /// Compute, or take from the cache, all blocks of a scene under its own lights and those of `environment`. Fails if the
-    /// monitor was stopped before they were complete.
+    /// Compute, or read from the cache, all blocks of a scene with its own lights and those of `environment`. Fails
+    /// if the monitor was stopped before the blocks were complete.
     pub fn new(
         oven: &Oven,
         scene: &Scene,
@@ -70,23 +70,23 @@ impl Equation {
         Ok(Self { optics, placed, coupled, lights, direct, driven, resolution })
     }
 
-    /// The equation of each instance.
+    /// The block row of each instance.
     pub fn systems(&self) -> Vec<InstanceSystem<'_>> {
         systems(&self.placed, &self.coupled, &self.driven)
     }
 
-    /// Optics of all elements, emission with what they reflect of the light of lamps, suns and sky.
+    /// Optics of all elements with emission E + ρD.
     pub fn driven_optics(&self) -> Optics {
         joined(&self.driven)
     }
 
-    /// Light of this radiosity (W/m², all elements), for evaluation at any point.
+    /// The light of this radiosity (W/m², all elements), for evaluation at any point.
     pub fn gather(&self, radiosity: &[Rgb]) -> Gather {
         Gather::new(&self.placed, &self.optics.emission, radiosity, &self.lights, self.resolution)
     }
 }
 
-/// The equation of each instance, with these optics.
+/// The block row of each instance, with these optics.
 pub fn systems<'a>(
     placed: &'a PlacedParts,
     coupled: &'a [Coupled],
@@ -96,13 +96,13 @@ pub fn systems<'a>(
         .map(|k| {
             let part = &placed.part_of(k).part;
             let self_block = coupled[k].self_block(&part.self_block);
-            let answered = coupled[k].local(placed.local_of(k));
+            let local_equilibrium = coupled[k].local(placed.local_of(k));
             let local = LocalSystem::new(
                 self_block,
                 &part.geometry.clusters,
                 &optics[k].reflectance,
                 part.local.solver,
-                answered.factors.as_ref(),
+                local_equilibrium.factors.as_ref(),
             );
             let elements = &placed.world.elements[placed.world.elements_of(k)];
             InstanceSystem {
@@ -111,14 +111,14 @@ pub fn systems<'a>(
                 clusters: &part.geometry.clusters,
                 coupling: &coupled[k].coupling,
                 local,
-                answers: &answered.answers,
+                answers: &local_equilibrium.answers,
                 areas: elements.iter().map(|element| element.area).collect(),
             }
         })
         .collect()
 }
 
-/// Rows of the scene's blocks, and what the exchange costs beside them.
+/// The expected work for blocks and exchange, in rows of form factors.
 fn expected_rows(prepared: &Prepared, environment: &Environment) -> f64 {
     let parts: usize = prepared.parts.iter().map(|part| part.geometry.elements.len()).sum();
     let elements = prepared.elements();

@@ -1,5 +1,5 @@
-//! A block of an instance as it was when the scene was another, and what changed since. The manifest from which the older
-//! block was made tells of every instance that was there; in goes that, out comes what the treecode needs to bring the
+//! A block of an instance from an earlier version of the scene, and the changes since then. Input: the manifest of
+//! the stale block, which lists every instance that existed. Output: a revision, from which the treecode brings the
 //! block up to date.
 
 use crate::placed_parts::PlacedParts;
@@ -10,21 +10,21 @@ use glam::DAffine3;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// An older block.
+/// A block of an earlier version of the scene.
 pub struct StaleBlock<'a> {
     rows: Cow<'a, Rows>,
-    /// The key under which it lies; none for a part's own.
+    /// The key of the block in the cache; none for a part's own block.
     pub key: Option<Key>,
     /// The sender of each of its columns.
     senders: Vec<Option<u32>>,
     change: Change,
 }
 
-/// Above this share of new or gone instances it pays no more to look for what stays.
-const MOST_CHANGED: f64 = 0.5;
+/// Above this share of added or removed instances a revision costs more than it saves.
+const MAX_CHANGED_SHARE: f64 = 0.5;
 
 impl<'a> StaleBlock<'a> {
-    /// A part's own block, in which what stands inside was not there.
+    /// A part's own block, which lacks the intruders.
     pub fn alone(placed: &'a PlacedParts, instance: usize, intruders: &[usize]) -> Self {
         let part = &placed.part_of(instance).part;
         let mut change = Change::none(placed.instances.len());
@@ -36,24 +36,25 @@ impl<'a> StaleBlock<'a> {
         Self { rows: Cow::Borrowed(&part.self_block), key: None, senders, change }
     }
 
-    /// The block that was made from what `last` lists, where now `wanted` is asked for; none if it is of another part or
-    /// made in another way, too much is new, or it is not in the cache any more. `columns` are those of the block wanted.
+    /// The block that was made from the inputs in `last`, for an update to the inputs in `current`; none if it
+    /// belongs to another part or was made with other settings, too much has changed, or it is no longer in the
+    /// cache. `columns`: the columns of the current block.
     pub fn last(
         placed: &PlacedParts,
         store: &Store,
         instance: usize,
         last: &Manifest,
-        wanted: &Manifest,
+        current: &Manifest,
         columns: Range<usize>,
     ) -> Option<Self> {
-        if !last.is_alike(wanted) {
+        if !last.is_alike(current) {
             return None;
         }
-        let (before, now) = (seen_in(last)?, seen_in(wanted)?);
+        let (before, now) = (seen_in(last)?, seen_in(current)?);
         let stays = stays(&before, &now);
         let new = (0..now.len()).filter(|n| !stays.contains(&Some(*n)));
         let gone = (0..before.len()).filter(|&b| stays[b].is_none());
-        if (new.clone().count() + gone.clone().count()) as f64 > MOST_CHANGED * now.len() as f64 {
+        if (new.clone().count() + gone.clone().count()) as f64 > MAX_CHANGED_SHARE * now.len() as f64 {
             return None;
         }
         let own = placed.instances[instance].placement;
@@ -80,13 +81,13 @@ impl<'a> StaleBlock<'a> {
         })
     }
 
-    /// For the treecode.
+    /// The revision for the treecode.
     pub fn revision(&self) -> Revision<'_> {
         Revision { old: &self.rows, senders: &self.senders, change: &self.change }
     }
 }
 
-/// For each instance that was there the one that is there now: the same part in the same place.
+/// For each earlier instance, the current instance with the same part and placement, if there is one.
 fn stays(before: &[(usize, Seen)], now: &[(usize, Seen)]) -> Vec<Option<usize>> {
     let mut free: Vec<bool> = vec![true; now.len()];
     let mut find = |seen: &Seen| {
@@ -118,7 +119,7 @@ fn add_part(
     Some(())
 }
 
-/// The sender of each column of a coupling that was made among the instances `before`.
+/// The sender of each column of a coupling that was made with the instances `before`.
 fn senders(
     placed: &PlacedParts,
     instance: usize,
@@ -127,7 +128,7 @@ fn senders(
     stays: &[Option<usize>],
 ) -> Vec<Option<u32>> {
     let nodes_of = |k: usize| placed.world.nodes_of(k).map(|node| Some(node as u32));
-    // Among the others the instance itself had the number that none of them has.
+    // The instance itself has the number that is missing among the others.
     let own = (0..).zip(before).find(|(n, (number, _))| n != number).map_or(before.len(), |(n, _)| n);
     let mut senders = Vec::new();
     for (place, (_, seen)) in before.iter().enumerate() {

@@ -1,11 +1,12 @@
-//! The light of the last run of a scene, to start from instead of darkness. Any start leads to the same light; one near to
-//! it takes fewer rounds.
+//! Radiosity of the last run of a scene, used as the start of the exchange instead of zero. Every start leads to the
+//! same solution; a close one needs fewer rounds.
 
 use crate::placed_parts::PlacedParts;
 use equilux_formats::{Lookup, Manifest, Result, Rgb, Solution, SolvedInstance, Store};
 use std::path::Path;
 
-/// The last light of every instance; dark where it is new or of another shape. None if nothing is known.
+/// The last radiosity of every instance, W/m²; zero where the instance is new or its part has changed. None if no
+/// radiosity is stored.
 pub fn last_light(placed: &PlacedParts, store: &Store, file: &Path) -> Option<Vec<Vec<Rgb>>> {
     let Lookup::Found(last) = store.load::<Solution>(&manifest(file).key()) else { return None };
     let of = |k: usize| {
@@ -16,7 +17,7 @@ pub fn last_light(placed: &PlacedParts, store: &Store, file: &Path) -> Option<Ve
     Some((0..placed.instances.len()).map(of).collect())
 }
 
-/// Keep the light for the next run.
+/// Store the radiosity for the next run. Fails if the cache cannot be written.
 pub fn keep(placed: &PlacedParts, store: &Store, file: &Path, radiosity: &[Rgb]) -> Result<()> {
     let instance = |k: usize| SolvedInstance {
         name: placed.instances[k].name.clone(),
@@ -27,7 +28,7 @@ pub fn keep(placed: &PlacedParts, store: &Store, file: &Path, radiosity: &[Rgb])
     store.save(&manifest(file), &Solution { instances, radiosity: placed.split(radiosity) })
 }
 
-/// There is one last light a scene file.
+/// Each scene file has one stored radiosity.
 fn manifest(file: &Path) -> Manifest {
     Manifest::new().setting("last light of", file.display())
 }

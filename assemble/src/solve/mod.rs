@@ -1,4 +1,4 @@
-//! From a scene's file to its light in equilibrium: parts baked, placed and coupled, lights added, light exchanged.
+//! Solves a scene: its file → baked, placed and coupled parts, lights → radiosity in equilibrium.
 
 mod last_light;
 pub mod settings;
@@ -23,11 +23,11 @@ use std::path::Path;
 /// A scene in equilibrium.
 #[derive(Debug)]
 pub struct Solved {
-    /// The equation that the light obeys.
+    /// The radiosity equation.
     pub equation: Equation,
-    /// The light that elements exchange, its rounds and its proved error.
+    /// The radiosity, the rounds of the exchange and the proved error.
     pub outcome: Outcome,
-    /// Irradiance of all elements with that of lamps, suns and sky, W/m², linear RGB.
+    /// Irradiance of all elements, including that of lamps, suns and sky, W/m², linear RGB.
     pub irradiance: Vec<Rgb>,
 }
 
@@ -71,8 +71,9 @@ pub fn solve(file: &Path, settings: &SolveSettings) -> Result<Solved> {
     solve_prepared(&scene, prepared, settings, &store, &Monitor::default(), &Unobserved)
 }
 
-/// Like [`solve`], of a scene that is already divided into elements, reporting progress to `monitor` and `observer`. Fails
-/// also if `monitor` is stopped before all form factors are known; later, the exchange ends after its round.
+/// Like [`solve`], for a scene that is already divided into elements, reporting progress to `monitor` and `observer`.
+/// Also fails if `monitor` is stopped before all form factors are available; a later stop ends the exchange after its
+/// current round.
 pub fn solve_prepared(
     scene: &Scene,
     prepared: Prepared,

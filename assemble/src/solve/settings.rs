@@ -13,7 +13,7 @@ pub struct SolveSettings {
     pub cache: PathBuf,
     /// Elements, parts, accuracy of form factors, and local solvers.
     pub preparation: Preparation,
-    /// The units of the intensities of the file's lights; none for those that each file suggests.
+    /// The units of the intensities of the file's lights; none for the units that each file suggests.
     pub light_units: Option<LightUnits>,
     /// Radiance from outside the scene; none for darkness.
     pub sky: Option<Sky>,
@@ -21,7 +21,8 @@ pub struct SolveSettings {
     pub method: Method,
     /// When the exchange ends.
     pub goal: Goal,
-    /// Whether to start from the light of the last such run of the scene, and to keep this one's for the next.
+    /// Whether to start from the stored radiosity of the last warm run of the scene, and to store this one for the
+    /// next.
     pub warm: bool,
 }
 
