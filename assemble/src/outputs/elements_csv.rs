@@ -1,6 +1,6 @@
-//! All elements with their light as one table, for spreadsheets and other programs. In goes a [`SceneLight`], out comes
-//! a CSV file (RFC 4180, lines ended by a line feed alone): one line an element, numbers in the shortest form that
-//! reads back to the same f64.
+//! All elements with their light as a table for spreadsheets and other programs. Input: a [`SceneLight`]. Output: a
+//! CSV file (RFC 4180, but with line feeds as line ends): one line for each element, numbers in the shortest form
+//! that reads back to the same f64.
 
 use crate::output_file;
 use crate::outputs::scene_light::SceneLight;
@@ -14,7 +14,7 @@ use std::path::Path;
 pub const HEADER: &str =
     "x,y,z,nx,ny,nz,area,rho_r,rho_g,rho_b,E_r,E_g,E_b,H_r,H_g,H_b,B_r,B_g,B_b,part,instance";
 
-/// Writes the table to `path`. Fails when it cannot be written there.
+/// Write the table to `path`. Fails if it cannot be written.
 pub fn write(path: &Path, light: &SceneLight) -> Result<()> {
     output_file::write(path, |out| table(out, light))
 }
@@ -42,7 +42,7 @@ fn numbers(light: &SceneLight, index: usize) -> impl Iterator<Item = f64> {
     place.chain([element.area]).chain(rows.into_iter().flatten())
 }
 
-/// A text as a field: quoted where commas, quotes or line breaks would otherwise be taken for the table's own.
+/// A text as a CSV field, quoted if it contains commas, quotes or line breaks.
 fn field(text: &str) -> Cow<'_, str> {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\"")).into()

@@ -1,4 +1,4 @@
-//! Everything a run leaves in `out/<scene>/`: pictures of rounds, of the end, of the elements, and the result as glTF.
+//! Writes the outputs of a run to `out/<scene>/`: pictures, the result as glTF, lightmaps and tables.
 
 pub mod elements_csv;
 pub mod model;
@@ -33,50 +33,51 @@ use std::time::{Duration, Instant};
 /// The file name of the lit model.
 pub const RESULT: &str = "result.glb";
 
-/// The first rounds and the end in one picture.
+/// The first rounds and the result in one picture.
 const STRIP: &str = "rounds.png";
 
-/// The elements.
+/// The edges of the elements.
 const WIREFRAME: &str = "wireframe.png";
 
 /// The classic solution.
 const CLASSIC: &str = "classic.png";
 
-/// So many rounds are in it.
+/// Number of rounds in the strip.
 const FIRST_ROUNDS: usize = 3;
 
-/// What there is to show.
+/// The results of a run, to be written as outputs.
 #[derive(Debug)]
 pub struct RunResults<'a> {
-    /// The light.
+    /// The solved scene.
     pub solved: &'a Solved,
-    /// The classic solution, if asked for.
+    /// The classic solution, if requested.
     pub classic: Option<&'a Classic>,
-    /// The plan of the lightmap, if asked for.
+    /// The layout of the lightmap, if requested.
     pub atlas: Option<&'a Atlas>,
-    /// The places of which to tell the light, if asked for.
+    /// The points at which to compute light, if requested.
     pub places: Option<&'a [Place]>,
-    /// What to compare a picture with, if asked for.
+    /// The reference light for a picture, if requested.
     pub against: Option<&'a Reference>,
 }
 
-/// What was written.
+/// The written outputs.
 #[derive(Debug)]
 pub struct OutputRecord {
-    /// The paths, for a person.
+    /// The paths, as text for the report.
     pub paths: Vec<String>,
-    /// What a person should know of them.
+    /// Notes for the report, one sentence each.
     pub notes: Vec<String>,
-    /// What the light of points took.
+    /// Wall time for the light at points.
     pub point_time: Duration,
-    /// The same in processor time, seconds, where the system tells.
+    /// Processor time for the light at points, seconds, where the operating system reports it.
     pub point_cpu: Option<f64>,
 }
 
-/// The file name of the light of points.
+/// The file name of the light at points.
 pub const POINTS: &str = "points.csv";
 
-/// Fail where the outputs could not be written, before hours are spent on them. Leaves nothing behind.
+/// Check before any long computation that the outputs can be written. Leaves no files behind. Fails if they cannot be
+/// written.
 pub fn check_writable(requests: &OutputRequests, scene: &Scene) -> Result<()> {
     let folder = requests.folder.join(&scene.name);
     let there = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
@@ -94,7 +95,7 @@ pub fn check_writable(requests: &OutputRequests, scene: &Scene) -> Result<()> {
     })
 }
 
-/// The error of a folder for outputs that cannot be used.
+/// The error for an output folder that cannot be used.
 pub fn unusable(folder: &Path, error: &std::io::Error) -> Error {
     Error::new(
         folder,
@@ -104,7 +105,7 @@ pub fn unusable(folder: &Path, error: &std::io::Error) -> Error {
     )
 }
 
-/// Write all outputs.
+/// Write all requested outputs. Fails if a file cannot be written.
 pub fn write_all(
     requests: &OutputRequests,
     scene: &Scene,
@@ -161,7 +162,7 @@ fn write_points(
     let gather = results.solved.gather();
     let elements = results.solved.elements();
     let Some(lights) = unless_stopped(points::light(&gather, elements, places, monitor))? else {
-        let note = format!("stopped: {POINTS} was not written; that of an earlier run is as it was");
+        let note = format!("stopped: {POINTS} was not written; the file of an earlier run is unchanged");
         return Ok(Some(WrittenFiles { paths: vec![], notes: vec![note] }));
     };
     let path = folder.join(POINTS);
@@ -169,8 +170,10 @@ fn write_points(
     let lost = lights.iter().filter(|light| light.is_none()).count();
     let notes = match lost {
         0 => vec![],
-        1 => vec!["1 point lies on no surface that looks its way; its line has no light".into()],
-        _ => vec![format!("{lost} points lie on no surface that looks their way; their lines have no light")],
+        1 => vec!["1 point lies on no surface that faces its normal; its line has no light".into()],
+        _ => vec![format!(
+            "{lost} points lie on no surface that faces their normals; their lines have no light"
+        )],
     };
     Ok(Some(WrittenFiles { paths: vec![path], notes }))
 }
@@ -193,13 +196,13 @@ fn write_lightmaps(
         lightmap = lightmap.and_then(|lightmap| lightmap.with_directions(directions, monitor));
     }
     let Some(lightmap) = unless_stopped(lightmap)? else {
-        let note = "stopped: no lightmaps were written; those of an earlier run are as they were";
+        let note = "stopped: no lightmaps were written; files of an earlier run are unchanged";
         return Ok(Some(WrittenFiles { paths: vec![], notes: vec![note.into()] }));
     };
     lightmap::write(folder, &lightmap, options.units, exposure).map(Some)
 }
 
-/// Draw the pictures that are wanted; returns the paths written, for a person.
+/// Draw the requested pictures. Returns the written paths as text.
 fn draw_all(
     requests: &OutputRequests,
     folder: &Path,
@@ -279,7 +282,7 @@ fn write_tables(
     Ok(written)
 }
 
-/// Make the folder, and remove the pictures of an earlier run that this one may not overwrite.
+/// Create the folder, and remove pictures of an earlier run that this run may not overwrite.
 fn prepare_folder(folder: &Path) -> Result<()> {
     let failed = |error: std::io::Error| unusable(folder, &error);
     std::fs::create_dir_all(folder).map_err(failed)?;

@@ -1,6 +1,6 @@
-//! The lit scene as a model that any glTF viewer shows. In go a [`SceneLight`] and the pictures' exposure; out comes a
-//! binary glTF 2.0 file: a node an instance, its elements as triangles that share no vertices, unlit (KHR_materials_unlit),
-//! each with the colour it has in the pictures (COLOR_0, linear).
+//! The lit scene as a model for any glTF viewer. Input: a [`SceneLight`] and the exposure of the pictures. Output: a
+//! binary glTF 2.0 file with a node for each instance. Its elements are triangles that share no vertices, unlit
+//! (KHR_materials_unlit), with the colours of the pictures (COLOR_0, linear).
 
 use crate::output_file;
 use crate::outputs::scene_light::SceneLight;
@@ -11,12 +11,12 @@ use glam::{DVec3, Vec3};
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// A vertex: POSITION and COLOR_0, three f32 each.
+/// Bytes of a vertex: POSITION and COLOR_0, three f32 each.
 const VERTEX_BYTES: usize = 24;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 
-/// Writes the lit scene, at least one element, to `path`. Fails when it cannot be written there.
+/// Write the lit scene, which has at least one element, to `path`. Fails if it cannot be written.
 pub fn write(path: &Path, light: &SceneLight, exposure: Exposure) -> Result<()> {
     let (document, vertices) = model(light, exposure);
     output_file::write(path, |out| glb::write(out, document.to_string().as_bytes(), &vertices))
@@ -48,7 +48,7 @@ fn model(light: &SceneLight, exposure: Exposure) -> (Value, Vec<u8>) {
     (document(nodes, roots, meshes, accessors, vertices.len()), vertices)
 }
 
-/// Puts all `nodes` under one that moves them to `origin`, where that is elsewhere, and returns the roots of the scene.
+/// Put all `nodes` under a common parent at `origin`, unless that is zero, and return the root nodes of the scene.
 pub(crate) fn under_origin(nodes: &mut Vec<Value>, origin: DVec3) -> Vec<usize> {
     let all: Vec<usize> = (0..nodes.len()).collect();
     if origin == DVec3::ZERO {
@@ -86,8 +86,8 @@ fn document(
 
 /// The triangles of one instance.
 struct InstanceTriangles {
-    /// Where its node stands, metres. Positions are relative to it, so that they keep their digits far from the scene's
-    /// origin; it is exact in f32 itself.
+    /// Translation of the node, metres, exact in f32. Positions are relative to it, so that they stay accurate far
+    /// from the origin of the scene.
     origin: Vec3,
     /// Position and colour.
     vertices: Vec<[Vec3; 2]>,
@@ -105,7 +105,7 @@ impl InstanceTriangles {
         Self { origin, vertices }
     }
 
-    /// The accessors of positions and colours, in a buffer where this triangles starts at `start`.
+    /// The accessors of positions and colours, for vertices that begin at byte `start` of the buffer.
     fn accessors(&self, start: usize) -> [Value; 2] {
         let positions = || self.vertices.iter().map(|vertex| vertex[0]);
         let accessor = |offset: usize| {

@@ -1,4 +1,4 @@
-//! What a run writes and reports beside the light itself.
+//! Requested outputs and contents of the report.
 
 use crate::lightmap::LightmapOptions;
 use crate::picture::shot::Shot;
@@ -18,26 +18,26 @@ pub enum Pictures {
     None,
 }
 
-/// What a run writes and reports. The default is that of the command line.
+/// The outputs and the contents of the report of a run. The default is that of the command line.
 #[derive(Debug, Clone)]
 pub struct OutputRequests {
-    /// The folder that gets `<scene>/` with everything but the tables below.
+    /// The folder in which `<scene>/` is created, for all outputs except the tables below.
     pub folder: PathBuf,
     /// Which pictures to draw.
     pub pictures: Pictures,
-    /// A picture from a chosen camera; none for none.
+    /// A picture from a chosen camera, if requested.
     pub shot: Option<Shot>,
-    /// Which lightmaps to write; none to write none.
+    /// Options of the lightmaps, if requested.
     pub lightmaps: Option<LightmapOptions>,
-    /// A table of points at which to compute light; none for none.
+    /// A table of points at which to compute light, if requested.
     pub points: Option<PathBuf>,
-    /// Where to write the table of elements; none to write none.
+    /// The path of the table of elements, if requested.
     pub elements: Option<PathBuf>,
-    /// Where to write for build tools which files were read; none to write nothing.
+    /// The path of a dependency file for build tools, if requested.
     pub depfile: Option<PathBuf>,
     /// Number of receivers whose rows are computed exactly, to measure the error of clusters.
     pub exact_rows: ExactRows,
-    /// Whether to solve the classic matrix too, and to report the difference.
+    /// Whether to solve the classic matrix too, and report the difference.
     pub verify: bool,
     /// Whether to report for each part and block whether it was computed or reused, and why.
     pub explain: bool,
@@ -61,7 +61,7 @@ impl Default for OutputRequests {
 }
 
 impl OutputRequests {
-    /// The table of light that the picture is compared with, if there is one.
+    /// The reference light for the picture, if there is one.
     pub fn reference(&self) -> Option<&Path> {
         self.shot.as_ref().and_then(|shot| shot.against.as_deref())
     }

@@ -1,4 +1,5 @@
-//! What every output shows: the placed elements with the light on them. It borrows everything and computes nothing.
+//! The data that every output uses: the placed elements with the light on them. It borrows everything and computes
+//! nothing.
 
 use equilux_bake::world::World;
 use equilux_formats::Rgb;
@@ -9,11 +10,11 @@ use glam::DVec3;
 pub struct SceneLight<'a> {
     /// The placed elements, in scene coordinates, metres.
     pub world: &'a World,
-    /// Where scene coordinates begin in those of the scene's file, metres.
+    /// The origin of scene coordinates in those of the scene's file, metres.
     pub origin: DVec3,
     /// Diffuse reflectance ρ, 0..1, one row an element.
     pub reflectance: &'a [Rgb],
-    /// Emission E, W/m², scaled as each instance asks, one row an element.
+    /// Emission E, W/m², with each instance's scale, one row an element.
     pub emission: &'a [Rgb],
     /// Irradiance H, W/m², one row an element.
     pub irradiance: &'a [Rgb],

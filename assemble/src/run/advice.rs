@@ -1,10 +1,10 @@
-//! The settings that reach a wanted error at the least cost. A job and a target error become the job with an element
-//! size and a tolerance, and a record of the trials.
+//! Finds the element size and the tolerance that reach a target error at the least cost. Input: a job and a target
+//! error. Output: the job with these settings, and a record of the trials.
 //!
-//! The scene is solved with coarse elements, then with ever finer ones, and light is gathered at the same points each time.
-//! Errors at the edges of shadows are of the first order in the size of elements, so that each step is about half of the one
-//! before, and all steps to come are together about as long as the last (Richardson 1911). The work is not lost: what was
-//! solved last is what is chosen, and its form factors are in the cache.
+//! The scene is solved with coarse elements, then with ever finer ones, and light is gathered at the same points each
+//! time. Errors at the edges of shadows are of first order in the element size, so each change is about half of the
+//! previous one, and all later changes together are about as large as the last (Richardson 1911). No work is lost:
+//! the last trial is the chosen one, and its form factors are in the cache.
 
 use crate::exchange::listener::Unobserved;
 use crate::gather::points::{Place, PointLight, light};
@@ -23,47 +23,53 @@ use equilux_formats::{Element, Error, Instance, Result, Rgb, Scene, Store};
 use glam::DVec3;
 use std::time::Instant;
 
-/// Points at which light is asked for, each inside another element of the default size. In the middles of half of them light is
-/// compared from size to size: closer to where things touch it may change without end, and a single point would decide. Those
-/// towards a corner tell how far an element's one value is from the light on it.
-const POINTS: usize = 1500;
+/// Number of points at which light is compared, each in a different element of the default size. Half of them are
+/// centroids, where light is compared from size to size: closer to contacts light may change without limit, and a
+/// single point would dominate. The others lie towards a corner and measure the difference between an element's
+/// single value and the light at a point.
+const SAMPLE_POINTS: usize = 1500;
 
-/// So far towards a corner, where no middle is of an element of half the size.
-const ASIDE: f64 = 1.0 / 3.0;
+/// Position of the other points, as a share of the way from the centroid to a corner: not the centroid of an element
+/// of half the size.
+const CORNER_SHARE: f64 = 1.0 / 3.0;
 
-/// The first elements are this many times as long as those of the default size.
-const COARSEST: f64 = 4.0;
+/// Size of the first elements, relative to the default size.
+const COARSEST_FACTOR: f64 = 4.0;
 
-/// Each size is half of the one before; the last is that which makes more elements than this, about which minutes are spent.
-const MOST_ELEMENTS: usize = 50_000;
+/// The search, which halves the size each time, ends when there are more elements than this; a solution then takes
+/// minutes.
+const MAX_ELEMENTS: usize = 50_000;
 
-/// The share of the error asked for that the tolerance may take, and the most it may be: what clusters do to light was
-/// measured to be half of that.
-const TOLERANCE: (f64, f64) = (0.3, 0.03);
+/// Tolerance as a share of the target error, and its maximum. The measured effect of clusters on light was half of
+/// the tolerance.
+const TOLERANCE_SHARE: f64 = 0.3;
+/// See [`TOLERANCE_SHARE`].
+const MAX_TOLERANCE: f64 = 0.03;
 
-/// What is estimated from a few sizes may be off by this factor.
-const CAUTION: f64 = 1.5;
+/// Safety factor on an error that is estimated from a few sizes.
+const SAFETY_FACTOR: f64 = 1.5;
 
-/// Light at points, of one size.
-struct Sampled {
-    /// W/m² in middles.
+/// Light at the points for one element size.
+struct SampledLight {
+    /// Irradiance at centroids, W/m².
     middles: Vec<Rgb>,
-    /// W/m² towards corners.
+    /// Irradiance at the points towards corners, W/m².
     aside: Vec<Rgb>,
-    /// W/m² of the elements there.
+    /// Irradiance of the elements at these points, W/m².
     of_elements: Vec<Rgb>,
-    /// How many elements there are in all.
+    /// Number of elements.
     elements: usize,
 }
 
-/// Find the settings for an error of `target`, and the job with them. Fails where the job would, and when it is stopped.
+/// Find the settings for an error of `target`, and apply them to the job. Fails where the job would, and if it is
+/// stopped.
 pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)> {
     let start = Instant::now();
     let scene = import_scene(&job.scene)?;
     job.check(&scene)?;
     job.tables(DVec3::ZERO)?;
     let store = Store::open(&job.settings.cache)?;
-    let tolerance = (TOLERANCE.0 * target).min(TOLERANCE.1);
+    let tolerance = (TOLERANCE_SHARE * target).min(MAX_TOLERANCE);
     let with = |element_size| {
         let resolution = Resolution::for_tolerance(tolerance);
         let preparation = Preparation { element_size, resolution, ..job.settings.preparation.clone() };
@@ -85,16 +91,19 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
         tried: vec![],
         seconds: 0.0,
     };
-    refine(&mut advice, COARSEST * default, |size| trials.sample(&with(Some(ElementSize::Metres(size)))))?;
+    refine(&mut advice, COARSEST_FACTOR * default, |size| {
+        trials.sample(&with(Some(ElementSize::Metres(size))))
+    })?;
     advice.seconds = start.elapsed().as_secs_f64();
     let settings =
         SolveSettings { warm: job.settings.warm, ..with(Some(ElementSize::Metres(advice.element_size))) };
     Ok((Job { settings, ..job.clone() }, advice))
 }
 
-/// Try `size`, m, and ever half of it, until the target is met, elements are too many, or do not become finer.
-fn refine(advice: &mut Advice, mut size: f64, sample: impl Fn(f64) -> Result<Sampled>) -> Result<()> {
-    let mut last: Option<Sampled> = None;
+/// Try `size`, m, and repeatedly half of it, until the target is met, there are too many elements, or elements do not
+/// become finer.
+fn refine(advice: &mut Advice, mut size: f64, sample: impl Fn(f64) -> Result<SampledLight>) -> Result<()> {
+    let mut last: Option<SampledLight> = None;
     loop {
         let began = Instant::now();
         let sampled = sample(size)?;
@@ -103,11 +112,11 @@ fn refine(advice: &mut Advice, mut size: f64, sample: impl Fn(f64) -> Result<Sam
         let seconds = began.elapsed().as_secs_f64();
         advice.tried.push(Trial { element_size: size, elements: sampled.elements, moved, seconds });
         if !is_finer {
-            // Every part has an element size of its own.
+            // Every part has its own fixed element size.
             return Ok(());
         }
         choose_last(advice, size, &sampled);
-        if advice.met || sampled.elements > MOST_ELEMENTS {
+        if advice.met || sampled.elements > MAX_ELEMENTS {
             return Ok(());
         }
         last = Some(sampled);
@@ -116,34 +125,35 @@ fn refine(advice: &mut Advice, mut size: f64, sample: impl Fn(f64) -> Result<Sam
 }
 
 /// Choose the last trial, and estimate its error.
-fn choose_last(advice: &mut Advice, size: f64, sampled: &Sampled) {
+fn choose_last(advice: &mut Advice, size: f64, sampled: &SampledLight) {
     advice.element_size = size;
     let Some(moved) = advice.tried.last().and_then(|trial| trial.moved) else { return };
     advice.estimated = moved;
     advice.estimated_of_elements = off(&sampled.of_elements, &sampled.aside).hypot(moved);
-    advice.met = CAUTION * moved <= advice.target;
+    advice.met = SAFETY_FACTOR * moved <= advice.target;
 }
 
-/// Places on elements, each for the same share of the area: in turn a middle and one towards a corner.
+/// Places on elements, each representing the same share of the area: alternately a centroid and a point towards a
+/// corner.
 fn spread(prepared: &Prepared) -> Vec<Place> {
     let placed = |i: &Instance| (&prepared.parts[i.part.index()].geometry, i.placement);
     let elements = World::new(prepared.instances.iter().map(placed)).elements;
     let whole: f64 = elements.iter().map(|element| element.area).sum();
-    let share = |area: f64| (area / whole * POINTS as f64).floor();
+    let share = |area: f64| (area / whole * SAMPLE_POINTS as f64).floor();
     let mut before = 0.0;
     let chosen = elements.iter().filter(|element| {
         let after = before + element.area;
         share(after) > share(std::mem::replace(&mut before, after))
     });
     let place = |(k, element): (usize, &Element)| {
-        let aside = element.centroid.lerp(element.corners.as_slice()[0], ASIDE);
+        let aside = element.centroid.lerp(element.corners.as_slice()[0], CORNER_SHARE);
         let point = if k % 2 == 0 { element.centroid } else { aside };
         Place { point, normal: element.normal }
     };
     chosen.enumerate().map(place).collect()
 }
 
-/// What all trials share.
+/// The inputs that all trials share.
 struct Trials<'a> {
     scene: &'a Scene,
     store: &'a Store,
@@ -152,8 +162,8 @@ struct Trials<'a> {
 }
 
 impl Trials<'_> {
-    /// Solve the scene with the elements of `settings`, and gather light at points.
-    fn sample(&self, settings: &SolveSettings) -> Result<Sampled> {
+    /// Solve the scene with `settings`, and gather light at the points.
+    fn sample(&self, settings: &SolveSettings) -> Result<SampledLight> {
         let Self { scene, store, places, monitor } = *self;
         let prepared = prepare(scene, &settings.preparation)?;
         let solved = solve_prepared(scene, prepared, settings, store, monitor, &Unobserved)?;
@@ -161,12 +171,12 @@ impl Trials<'_> {
             return Err(Error::Stopped);
         }
         let lights = light(&solved.gather(), solved.elements(), places, monitor)?;
-        Ok(Sampled::of(&lights, &solved))
+        Ok(SampledLight::of(&lights, &solved))
     }
 }
 
-impl Sampled {
-    /// Light at places, in turn a middle and one towards a corner, in a solved scene.
+impl SampledLight {
+    /// Light at alternating centroids and points towards corners of a solved scene.
     fn of(lights: &[Option<PointLight>], solved: &Solved) -> Self {
         let dark = Rgb::BLACK;
         let [middles, aside] =
@@ -183,7 +193,7 @@ impl Sampled {
     }
 }
 
-/// The root mean square difference over the mean of the second; the worst channel.
+/// The root mean square difference relative to the mean of `truth`; the worst channel.
 fn off(values: &[Rgb], truth: &[Rgb]) -> f64 {
     weighted_rms_over_mean(values.iter().zip(truth).map(|(&a, &b)| (a - b, b, 1.0)))
 }

@@ -1,5 +1,5 @@
-//! The work of a run beside form factors and exchange, in rows of form factors, for its progress. Rough factors suffice: they
-//! decide how well the time left is foretold, and nothing else.
+//! Estimated work of a run besides form factors and exchange, in rows of form factors, for the progress display.
+//! Rough factors suffice, since they only affect the estimate of the remaining time.
 
 use crate::gather::points::{Place, ROWS_PER_POINT};
 use crate::lightmap::ROWS_PER_TEXEL;
@@ -8,7 +8,7 @@ use crate::outputs::requests::OutputRequests;
 use crate::proof::exact_rows::ROWS_PER_EXACT_ROW;
 use crate::proof::sample::ExactRows;
 
-/// The work of what is requested of a scene with so many elements.
+/// The work of the requested outputs of a scene with this number of elements.
 pub fn expected_work(
     requests: &OutputRequests,
     elements: usize,

@@ -1,4 +1,4 @@
-//! The whole run: a scene is solved, its light is proved and written, and the run is reported.
+//! A complete run: solves the scene, proves the error, writes the outputs and creates the report.
 
 pub mod advice;
 mod expected_work;
@@ -31,7 +31,8 @@ use job::Job;
 use std::path::Path;
 use std::time::Instant;
 
-/// Run the job; everything is written when this returns.
+/// Run the job. All outputs are written when this returns. Fails if the scene cannot be read or solved, or an output
+/// cannot be written.
 pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
     run_observed(job, monitor, &Unobserved)
 }
@@ -99,7 +100,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     Ok(report)
 }
 
-/// The scene and its parts with elements. Fails where the job could not be done.
+/// The scene, and its parts divided into elements. Fails where the job is not possible.
 fn opened(job: &Job) -> Result<(Scene, Prepared)> {
     let mut scene = import_scene(&job.scene)?;
     scene.sources.extend(job.beside().map(Path::to_path_buf));

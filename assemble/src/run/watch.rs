@@ -1,8 +1,8 @@
-//! Again whenever a file of a scene changes, until somebody stops it.
+//! Repeats a run whenever a file of the scene changes, until the monitor is stopped.
 //!
-//! Folders are watched, not files, as editors put a new file in the place of the old one; and whatever the system says of
-//! an event, only the contents of the files that the scene was read from decide. So neither a file that is only touched
-//! nor what a run itself writes beside the scene makes another run.
+//! Folders are watched instead of files, since editors replace files by new ones. Only the contents of the scene's
+//! input files decide whether a run is needed, whatever the events of the operating system say: neither a touched
+//! file nor the outputs of a run start another run.
 
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
@@ -13,31 +13,31 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
-/// How often it is asked whether to stop.
-const TICK: Duration = Duration::from_millis(100);
+/// Interval at which stop requests are checked.
+const STOP_CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
-/// A change is over when nothing more happens for this long: programs write in pieces, and several files.
-const QUIET: Duration = Duration::from_millis(200);
+/// A change is complete when no event follows for this long: programs write in steps, and several files.
+const QUIET_PERIOD: Duration = Duration::from_millis(200);
 
-/// A folder in which something happens all the time is looked at after this long all the same.
-const PATIENCE: Duration = Duration::from_secs(2);
+/// Maximum time to wait for the quiet period in a folder with constant events.
+const MAX_WAIT: Duration = Duration::from_secs(2);
 
-/// Of a scene that cannot be read it is not known where its files lie: it is tried again this often.
-const RETRY: Duration = Duration::from_secs(1);
+/// Interval at which a scene that cannot be read is tried again: the locations of its files are unknown.
+const RETRY_INTERVAL: Duration = Duration::from_secs(1);
 
-/// Call `run` now and whenever the scene in `file` or what lies in `beside` has changed, with the reason, until the monitor is
-/// stopped. Fails where folders cannot be watched.
+/// Call `run` with the reason, immediately and whenever the scene in `file` or a file in `beside` has changed, until
+/// the monitor is stopped. Fails if folders cannot be watched.
 pub fn watch(file: &Path, beside: &[&Path], monitor: &Monitor, mut run: impl FnMut(&str)) -> Result<()> {
     let (sender, events) = channel();
     let watcher = notify::recommended_watcher(move |_| {
-        // Nobody listens any more once the watch is over.
+        // The channel is closed once the watch has ended.
         let _ = sender.send(());
     });
     let mut folders =
         Folders { watcher: watcher.map_err(|error| unwatchable(file, &error))?, watched: HashSet::new() };
     let mut why = "first run".to_owned();
     loop {
-        let state = State::of(file, beside);
+        let state = SceneState::of(file, beside);
         folders.watch(file, &state)?;
         run(&why);
         loop {
@@ -53,16 +53,16 @@ pub fn watch(file: &Path, beside: &[&Path], monitor: &Monitor, mut run: impl FnM
     }
 }
 
-/// What a scene is made of.
+/// The state of a scene's input files.
 #[derive(PartialEq)]
-enum State {
-    /// What its files hold; nothing of those that cannot be read.
+enum SceneState {
+    /// A digest of each file; none for files that cannot be read.
     Files(BTreeMap<PathBuf, Option<Digest>>),
-    /// Why it cannot be read.
+    /// The error, if the scene cannot be read.
     Broken(String),
 }
 
-impl State {
+impl SceneState {
     fn of(file: &Path, beside: &[&Path]) -> Self {
         match import_scene(file) {
             Ok(scene) => Self::Files(digests(
@@ -72,7 +72,7 @@ impl State {
         }
     }
 
-    /// What has changed since, for a person.
+    /// The change since then as text, if there is one.
     fn change(&self, file: &Path, beside: &[&Path]) -> Option<String> {
         let changed: Vec<String> = match self {
             Self::Files(old) => {
@@ -98,7 +98,7 @@ fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// The folders that are watched.
+/// The watched folders.
 struct Folders {
     watcher: RecommendedWatcher,
     watched: HashSet<PathBuf>,
@@ -106,10 +106,10 @@ struct Folders {
 
 impl Folders {
     /// Watch the folders of all files of a scene.
-    fn watch(&mut self, file: &Path, state: &State) -> Result<()> {
+    fn watch(&mut self, file: &Path, state: &SceneState) -> Result<()> {
         let files: Vec<&Path> = match state {
-            State::Files(files) => files.keys().map(PathBuf::as_path).collect(),
-            State::Broken(_) => vec![file],
+            SceneState::Files(files) => files.keys().map(PathBuf::as_path).collect(),
+            SceneState::Broken(_) => vec![file],
         };
         for path in files {
             let parent = path.parent().filter(|folder| *folder != Path::new(""));
@@ -127,26 +127,26 @@ fn unwatchable(path: &Path, error: &notify::Error) -> Error {
     Error::new(
         path,
         format!("cannot be watched ({error})"),
-        "a folder of which the system tells changes",
+        "a folder whose changes the operating system reports",
         "assemble without --watch",
     )
 }
 
-/// Wait until something happened and is over, or it is time to look anyway, or the monitor is stopped.
-fn wait(events: &Receiver<()>, monitor: &Monitor, state: &State) {
+/// Wait until a change is complete, a retry is due, or the monitor is stopped.
+fn wait(events: &Receiver<()>, monitor: &Monitor, state: &SceneState) {
     let start = Instant::now();
     while !monitor.stopped() {
-        match events.recv_timeout(TICK) {
+        match events.recv_timeout(STOP_CHECK_INTERVAL) {
             Ok(()) => break,
             Err(RecvTimeoutError::Timeout)
-                if matches!(state, State::Broken(_)) && start.elapsed() > RETRY =>
+                if matches!(state, SceneState::Broken(_)) && start.elapsed() > RETRY_INTERVAL =>
             {
                 return;
             }
             Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => std::thread::sleep(TICK),
+            Err(RecvTimeoutError::Disconnected) => std::thread::sleep(STOP_CHECK_INTERVAL),
         }
     }
     let first = Instant::now();
-    while first.elapsed() < PATIENCE && events.recv_timeout(QUIET).is_ok() {}
+    while first.elapsed() < MAX_WAIT && events.recv_timeout(QUIET_PERIOD).is_ok() {}
 }

@@ -1,5 +1,5 @@
-//! What a run would do, before a form factor is computed: the run itself with a monitor that is stopped. What the cache
-//! has, the run's own code finds there; what it has not is not made. A [`Job`] becomes a [`Plan`].
+//! A dry run: the code of a run with a monitor that is already stopped. It finds what the cache holds, and computes
+//! nothing. Input: a [`Job`]. Output: a [`Plan`].
 
 mod exchange;
 pub mod text;
@@ -25,35 +25,35 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use unseen::unseen_pairs;
 
-/// What would be computed, reused and left out, as `--json` prints it.
+/// Planned, reused and skipped work, as `--json` prints it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Plan {
     /// The scene's name.
     pub scene: String,
     /// Number of elements in the scene.
     pub elements: usize,
-    /// Element size in force, for a person.
+    /// Element size in force, as text.
     pub element_size: String,
-    /// How form factors are kept, for a person.
+    /// Accuracy and storage of form factors, as text.
     pub resolution: String,
     /// The distinct parts.
     pub parts: Vec<PartFate>,
-    /// The parts in their places.
+    /// The instances.
     pub instances: Vec<InstanceFate>,
-    /// Pairs of instances whose faces cannot see each other whatever stands between; walls may hide more.
+    /// Pairs of instances whose faces cannot see each other, whatever stands between them; walls may hide more pairs.
     pub unseen: Vec<[String; 2]>,
-    /// How parts would exchange light, and why, for a person.
+    /// The exchange method and the reason for it, as text.
     pub exchange: String,
-    /// What would be left out because it changes no radiosity, and how often at least, by reason.
+    /// Minimum amount of work that would be skipped because it changes no radiosity, by reason.
     pub left_out: BTreeMap<String, usize>,
-    /// Bytes of the classic matrix in f64: every element with every other.
+    /// Size of the classic matrix of all pairs of elements in f64, bytes.
     pub classic_matrix_bytes: usize,
-    /// What was ignored, dropped or found damaged, one sentence each.
+    /// Notes on ignored, dropped or damaged input, one sentence each.
     pub notes: Vec<String>,
 }
 
-/// What the job would do. Computes no form factor. Parts whose form factors are in the cache are brought up to date
-/// there: a new paint is solved now instead of by the run.
+/// The plan of a job. Computes no form factors. Parts whose form factors are in the cache are updated there: their
+/// local equilibrium with a new paint is solved now instead of in the run. Fails where the job would.
 pub fn plan(job: &Job) -> Result<Plan> {
     let mut scene = import_scene(&job.scene)?;
     let prepared = prepare(&scene, &job.settings.preparation)?;
@@ -106,8 +106,8 @@ fn planned_parts(
     prepared.parts.iter().zip(baked).enumerate().map(planned).collect()
 }
 
-/// What `foresee` says of the parts in their places, if the cache has them all. Without its parts nothing is known under
-/// which a coupling could be found: then every block is computed.
+/// The result of `foresee` for the placed parts, if all of them are in the cache. Without the parts, the keys of
+/// couplings are unknown, and every block is computed.
 fn planned_instances(
     prepared: &Prepared,
     baked: Vec<Option<Baked>>,
@@ -115,7 +115,7 @@ fn planned_instances(
 ) -> Vec<InstanceFate> {
     let foreseen = match baked.into_iter().collect::<Option<Vec<Baked>>>() {
         Some(parts) => foresee(&PlacedParts::new(parts, prepared.instances.clone())),
-        None => anew(prepared),
+        None => all_computed(prepared),
     };
     let planned = |(instance, foreseen): (&Instance, ForeseenBlocks)| InstanceFate {
         name: instance.name.clone(),
@@ -127,8 +127,8 @@ fn planned_instances(
     prepared.instances.iter().zip(foreseen).map(planned).collect()
 }
 
-/// Everything computed.
-fn anew(prepared: &Prepared) -> Vec<ForeseenBlocks> {
+/// All blocks of all instances would be computed.
+fn all_computed(prepared: &Prepared) -> Vec<ForeseenBlocks> {
     let geometry = |k: usize| &prepared.parts[prepared.instances[k].part.index()].geometry;
     let computed = || Origin::Computed("not all parts are in the cache".into());
     let of = |k: usize| {
@@ -138,12 +138,12 @@ fn anew(prepared: &Prepared) -> Vec<ForeseenBlocks> {
     (0..prepared.instances.len()).map(of).collect()
 }
 
-/// What can be told without form factors of what the report of the run will count.
+/// The counts of skipped work that are known without form factors.
 fn left_out(prepared: &Prepared, unseen: usize, hidden_shells: usize) -> BTreeMap<String, usize> {
     let parts = || prepared.instances.iter().map(|instance| &prepared.parts[instance.part.index()]);
     let black = |part: &PreparedPart| part.optics.reflectance.iter().filter(|&&rho| rho == [0.0; 3]).count();
     let counts = [
-        // Each of the two has a coupling.
+        // A pair has two couplings.
         (UNSEEN, 2 * unseen),
         (BLACK_ROWS, parts().map(black).sum()),
         (SHARED, prepared.instances.len() - prepared.parts.len()),

@@ -1,14 +1,14 @@
-//! The plan for a person.
+//! The plan as text.
 
 use super::Plan;
 use crate::report::fates::{corrected_line, part_line, step};
 use crate::report::text::{bytes, left_out_line};
 
-/// So many places are named, more are counted.
-const NAMED: usize = 4;
+/// Number of instances that are named; the rest are counted.
+const MAX_NAMED: usize = 4;
 
 impl Plan {
-    /// A line for each part, for places of which the same is to be said, and for what will be left out.
+    /// A line for each part, for each group of instances with the same fate, and for the skipped work.
     pub fn text(&self) -> String {
         let mut lines = vec![format!(
             "{}: {} elements ({}; {}), {} parts in {} places; no form factor is computed now",
@@ -40,7 +40,7 @@ impl Plan {
             }
         }
         let line = |(what, names): (String, Vec<&str>)| match names.len() {
-            0..=NAMED => format!("coupling of {} {what}", names.join(", ")),
+            0..=MAX_NAMED => format!("coupling of {} {what}", names.join(", ")),
             count => format!("coupling of {count} places {what}"),
         };
         lines.into_iter().map(line).collect()

@@ -1,12 +1,12 @@
-//! Which parts cannot see each other whatever stands between them, from their faces alone: light passes only between two
-//! faces that each have something of the other before their front. Conservative: pairs hidden by walls are not found.
+//! Finds parts that cannot see each other, from their faces alone: light passes between two faces only if each has a
+//! point in front of the other. Conservative: pairs that are hidden by walls are not found.
 
 use equilux_bake::geometry::tolerance::IN_PLANE;
 use equilux_bake::world::World;
 use equilux_formats::FaceId;
 use glam::DVec3;
 
-/// The pairs of instances that cannot see each other, the smaller number first, in order.
+/// The pairs of instances that cannot see each other, the smaller number first, in ascending order.
 pub fn unseen_pairs(world: &World) -> Vec<[usize; 2]> {
     let fronts: Vec<Vec<Front>> = (0..world.instances()).map(|k| fronts(world, k)).collect();
     let pairs = (0..fronts.len()).flat_map(|a| (a + 1..fronts.len()).map(move |b| [a, b]));
@@ -20,7 +20,7 @@ struct Front<'a> {
     face: FaceId,
 }
 
-/// The distinct fronts of an instance's elements; those of one front stand together.
+/// The distinct fronts of an instance's elements. Elements of one front are adjacent.
 fn fronts(world: &World, instance: usize) -> Vec<Front<'_>> {
     let mut fronts: Vec<Front> = Vec::new();
     for element in &world.elements[world.elements_of(instance)] {
@@ -41,7 +41,7 @@ fn can_see(a: &[Front], b: &[Front]) -> bool {
 }
 
 impl Front<'_> {
-    /// Whether any of a polygon lies before this front, by more than rounding.
+    /// Whether any corner of a polygon lies in front of this face, by more than rounding.
     fn has_before(&self, polygon: &[DVec3]) -> bool {
         let origin = self.corners[0];
         polygon.iter().any(|&p| self.normal.dot(p - origin) > IN_PLANE * (p - origin).length())
