@@ -1,7 +1,6 @@
 //! Sums over a whole scene: means, differences and row sums.
 
 use crate::exchange::system::InstanceSystem;
-use equilux_bake::equilibrium::{added, subtract};
 use equilux_formats::{Element, Rgb};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -19,18 +18,18 @@ pub struct Defect {
 
 /// The mean over the scene's area, channel by channel.
 pub fn mean_over_area(elements: &[Element], values: &[Rgb]) -> Rgb {
-    let (mut sum, mut total) = ([0.0; 3], 0.0);
+    let (mut sum, mut total) = (Rgb::BLACK, 0.0);
     for (element, value) in elements.iter().zip(values) {
-        sum = added(sum, value.map(|v| v * element.area));
+        sum += *value * element.area;
         total += element.area;
     }
-    sum.map(|sum| sum / total)
+    sum / total
 }
 
 /// √(Σ w d² / Σ w) over Σ w u / Σ w, the worst channel: the root mean square of differences d in units of the mean of u,
 /// from rows (d, u, w). A channel without differences has none, whatever its mean.
 pub fn weighted_rms_over_mean(rows: impl Iterator<Item = (Rgb, Rgb, f64)>) -> f64 {
-    let (mut squares, mut sums, mut weights) = ([0.0; 3], [0.0; 3], 0.0);
+    let (mut squares, mut sums, mut weights) = (Rgb::BLACK, Rgb::BLACK, 0.0);
     for (difference, unit, weight) in rows {
         for c in 0..3 {
             squares[c] += weight * difference[c] * difference[c];
@@ -80,6 +79,6 @@ pub fn largest_difference(a: &[Rgb], b: &[Rgb]) -> f64 {
 
 /// The root mean square difference over the mean of the second, weighted by area; the worst channel.
 pub fn mean_difference(elements: &[Element], a: &[Rgb], b: &[Rgb]) -> f64 {
-    let differences: Vec<Rgb> = a.iter().zip(b).map(|(&a, &b)| subtract(a, b)).collect();
+    let differences: Vec<Rgb> = a.iter().zip(b).map(|(&a, &b)| a - b).collect();
     rms_over_mean(elements, &differences, b)
 }

@@ -2,7 +2,7 @@
 //! out come its columns by name.
 
 use csv::StringRecord;
-use equilux_formats::{Error, Result};
+use equilux_formats::{Error, Result, Rgb};
 use std::path::Path;
 
 /// A table that was read. Columns that nobody asks for may hold anything.
@@ -45,6 +45,11 @@ impl<'a> Table<'a> {
             number.ok_or_else(|| self.wrong_line(row, &format!("has `{field}` for {name}")))
         };
         self.lines.iter().enumerate().map(number).collect()
+    }
+
+    /// The colours in three columns. Fails as [`Table::vectors`] does.
+    pub fn colours(&self, names: [&str; 3]) -> Result<Vec<Rgb>> {
+        Ok(self.vectors(names)?.into_iter().map(Rgb).collect())
     }
 
     /// Three columns, line by line. Fails as one does.

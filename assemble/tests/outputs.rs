@@ -12,8 +12,8 @@ use equilux_formats::{Camera, Corners, Element, Face, FaceId, Geometry, Material
 use glam::{DAffine3, DMat3, DVec3};
 use std::f64::consts::PI;
 
-const RED: Rgb = [PI * 0.7, 0.0, 0.0];
-const BLUE: Rgb = [0.0, 0.0, PI * 0.7];
+const RED: Rgb = Rgb([PI * 0.7, 0.0, 0.0]);
+const BLUE: Rgb = Rgb([0.0, 0.0, PI * 0.7]);
 
 /// Rectangles, each with its own face: a corner and the two sides that span it, the front towards their cross product.
 fn geometry(rectangles: &[[DVec3; 3]]) -> Geometry {
@@ -138,7 +138,8 @@ fn a_closed_room_is_looked_into_from_outside() {
 fn exposure_brings_surfaces_up_and_survives_the_dark() {
     let world = place(&cube(DVec3::ZERO));
     let canvas = trace(&world, camera(4.0));
-    let choose = |b: f64, e: f64| Exposure::choose(|| canvas.elements(), &[[b; 3]; 6], &[[e; 3]; 6]).0;
+    let choose =
+        |b: f64, e: f64| Exposure::choose(|| canvas.elements(), &[Rgb::splat(b); 6], &[Rgb::splat(e); 6]).0;
     // All six sides alike, so the 95th percentile is their own L = B/π. 1e-12: a few roundings.
     for b in [1e-12, 3.0, 1e12] {
         assert!((choose(b, 0.0) * b / PI - 0.8).abs() < 1e-12, "factor {} for radiosity {b}", choose(b, 0.0));
@@ -165,7 +166,7 @@ impl Fixture {
         let far = DAffine3::from_translation(DVec3::new(1e7, 0.1, -3e6)) * DAffine3::from_rotation_y(0.3);
         let world = World::new([(&cube(DVec3::ZERO), far), (&small, DAffine3::IDENTITY)]);
         let rows = [0.1, 1e-17, 2e5 / 3.0, PI].map(|scale| {
-            (0..world.elements.len()).map(|i| [0.1, 0.2, 0.3].map(|c| c * scale * (i + 1) as f64)).collect()
+            (0..world.elements.len()).map(|i| Rgb([0.1, 0.2, 0.3]) * scale * (i + 1) as f64).collect()
         });
         let names =
             [["box, \"big\"", "tri"], ["a\nb", "plain"]].map(|names| names.map(String::from).to_vec());
@@ -250,7 +251,7 @@ fn the_model_holds_every_element_in_place_and_colour() {
                 let found = positions[vertex + place];
                 assert!(corner.distance(found) < 1e-6, "element {element}: {corner} became {found}");
             }
-            let expected = Exposure(0.2).shown(fixture.rows[3][element]).map(|light| light as f32);
+            let expected = Exposure(0.2).shown(fixture.rows[3][element]).0.map(|light| light as f32);
             assert_eq!(colours[range], vec![expected; count]);
             vertex += count;
         }

@@ -109,15 +109,13 @@ impl ClusterTree {
         assert_eq!(elements.len(), self.elements(), "a value an element");
         let base = nodes.len();
         nodes.extend_from_slice(elements);
-        nodes.resize(base + self.nodes(), [0.0; 3]);
+        nodes.resize(base + self.nodes(), Rgb::BLACK);
         for (cluster, pair) in self.children.iter().enumerate().rev() {
             let node = self.elements() + cluster;
             let [left, right] = pair.map(|child| child as usize);
             let share = self.areas[left] / self.areas[node];
-            nodes[base + node] = std::array::from_fn(|c| {
-                let (l, r) = (nodes[base + left][c], nodes[base + right][c]);
-                r + (l - r) * share
-            });
+            let (l, r) = (nodes[base + left], nodes[base + right]);
+            nodes[base + node] = r + (l - r) * share;
         }
     }
 
@@ -127,13 +125,9 @@ impl ClusterTree {
         let mut ranges: Vec<[Rgb; 2]> = means.iter().map(|&value| [value; 2]).collect();
         for (cluster, pair) in self.children.iter().enumerate().rev() {
             let [left, right] = pair.map(|child| ranges[child as usize]);
-            let low = std::array::from_fn(|c| left[0][c].min(right[0][c]));
-            let high = std::array::from_fn(|c| left[1][c].max(right[1][c]));
-            ranges[self.elements() + cluster] = [low, high];
+            ranges[self.elements() + cluster] = [left[0].min(right[0]), left[1].max(right[1])];
         }
-        let spread = |(mean, [low, high]): (&Rgb, [Rgb; 2])| {
-            std::array::from_fn(|c| (high[c] - mean[c]).max(mean[c] - low[c]))
-        };
+        let spread = |(&mean, [low, high]): (&Rgb, [Rgb; 2])| (high - mean).max(mean - low);
         nodes.extend(means.iter().zip(ranges).map(spread));
     }
 

@@ -157,7 +157,7 @@ pub struct Tints {
 impl Tints {
     /// Those of so many elements without textures.
     pub fn plain(elements: usize) -> Self {
-        Self { reflectance: vec![[1.0; 3]; elements], emission: vec![[1.0; 3]; elements] }
+        Self { reflectance: vec![Rgb::WHITE; elements], emission: vec![Rgb::WHITE; elements] }
     }
 }
 

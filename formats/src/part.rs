@@ -2,6 +2,7 @@
 
 use crate::geometry::Corners;
 use crate::ids::MaterialId;
+use crate::rgb::Rgb;
 use crate::texture::{TexturedTriangle, Textures};
 use glam::{DAffine3, DVec2};
 use serde::{Deserialize, Serialize};
@@ -79,9 +80,9 @@ pub struct Material {
     /// The material's name in the file, or empty.
     pub name: String,
     /// Diffuse reflectance ρ, 0..1, from glTF's base colour factor.
-    pub reflectance: [f64; 3],
+    pub reflectance: Rgb,
     /// Emission E = πL, W/m², where the radiance L is emissiveFactor × emissive strength.
-    pub emission: [f64; 3],
+    pub emission: Rgb,
     /// Whether the back reflects and emits as the front does; a one-sided surface is black on its back.
     pub double_sided: bool,
     /// What both vary by.

@@ -2,6 +2,7 @@
 
 use crate::ids::{MaterialId, PartId};
 use crate::part::{Material, Part};
+use crate::rgb::Rgb;
 use glam::{DAffine3, DVec3};
 use std::path::PathBuf;
 
@@ -54,9 +55,9 @@ pub struct Repainted {
     /// The material.
     pub material: MaterialId,
     /// Diffuse reflectance ρ, 0..1, linear RGB.
-    pub reflectance: [f64; 3],
+    pub reflectance: Rgb,
     /// Emission, W/m², linear RGB, before the instance's emission scale.
-    pub emission: [f64; 3],
+    pub emission: Rgb,
 }
 
 impl Instance {
@@ -72,8 +73,7 @@ impl Instance {
             let material = &mut here[material.index()];
             (material.reflectance, material.emission) = (*reflectance, *emission);
         }
-        here.iter_mut()
-            .for_each(|material| material.emission = material.emission.map(|e| e * self.emission_scale));
+        here.iter_mut().for_each(|material| material.emission = material.emission * self.emission_scale);
         here
     }
 }
@@ -101,7 +101,7 @@ pub struct PunctualLight {
     /// Where it shines to, unit.
     pub direction: DVec3,
     /// Linear RGB × intensity: candela for points and spots, lux for directional lights.
-    pub intensity: [f64; 3],
+    pub intensity: Rgb,
     /// What these numbers mean, as far as the file tells by naming the program that wrote it.
     pub units: LightUnits,
     /// Which of the extension's three lights it is.

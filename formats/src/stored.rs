@@ -11,6 +11,7 @@ mod solution;
 use crate::container::{Kind, Number, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
+use crate::rgb::Rgb;
 
 /// Something that has a file of its own in the cache.
 pub trait Stored: Sized + Send + 'static {
@@ -50,4 +51,9 @@ fn finite_rows<const N: usize>(reader: &mut Reader, name: &str) -> Result<Vec<[f
     let (rows, rest) = values.as_chunks::<N>();
     check(reader, rest.is_empty(), || format!("{} {name}, not a multiple of {N}", values.len()))?;
     Ok(rows.to_vec())
+}
+
+/// Finite lights.
+fn finite_lights(reader: &mut Reader, name: &str) -> Result<Vec<Rgb>> {
+    Ok(finite_rows(reader, name)?.into_iter().map(Rgb).collect())
 }

@@ -20,8 +20,12 @@ pub fn write_whole(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<
     fill(&mut buffered)?;
     buffered.flush()?;
     drop(buffered);
-    file.persist(path)?;
-    Ok(())
+    // By std's rename, which on Windows, too, replaces a file that another process has open. Locked until it is done.
+    let (_locked, temporary) = file.into_parts();
+    let temporary = temporary.keep().map_err(|error| error.error)?;
+    std::fs::rename(&temporary, path).inspect_err(|_| {
+        let _ = std::fs::remove_file(&temporary);
+    })
 }
 
 /// Fails if no file could be made beside `path`. Leaves nothing behind.
@@ -40,7 +44,8 @@ pub(crate) fn remove_left_over(folder: &Path) {
     for entry in folder.read_dir().into_iter().flatten().flatten() {
         let name = entry.file_name();
         let temporary = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
-        if temporary && let Ok(file) = File::options().append(true).open(entry.path()) {
+        // Windows locks no file that is open for appending only.
+        if temporary && let Ok(file) = File::options().read(true).append(true).open(entry.path()) {
             // Litter that cannot be removed harms nobody.
             let _ = file.try_lock().map(|()| std::fs::remove_file(entry.path()));
         }

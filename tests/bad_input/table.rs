@@ -1,6 +1,6 @@
 //! Scenes that cannot be: refused by name, with a remedy, and nothing is written.
 
-use equilux_formats::Material;
+use equilux_formats::{Material, Rgb};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, lamp, square};
 use equilux_tests::shapes::room;
@@ -111,7 +111,7 @@ fn is_input_or_cached(path: &std::path::Path) -> bool {
 
 /// A closed room that shines and reflects everything.
 fn furnace() -> Node {
-    let white = Material { reflectance: [1.0; 3], ..lamp([1.0; 3]) };
+    let white = Material { reflectance: Rgb([1.0; 3]), ..lamp([1.0; 3]) };
     Node::new("furnace", room(white, DVec3::ZERO, DVec3::ONE))
 }
 

@@ -10,6 +10,7 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::Division;
 use equilux_bake::treecode::Resolution;
+use equilux_formats::Rgb;
 use equilux_tests::levels::furnished;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, solid};
@@ -67,7 +68,7 @@ fn main() {
     };
     lamp(&mut level[5], 0.0);
     said("a lamp switched off", &level, &job, Some(first));
-    level[2].part.as_mut().expect("a part").materials[0].reflectance = [0.8, 0.3, 0.2];
+    level[2].part.as_mut().expect("a part").materials[0].reflectance = Rgb([0.8, 0.3, 0.2]);
     said("a wall repainted", &level, &job, Some(first));
     let elsewhere = Workshop::new();
     said(

@@ -18,6 +18,7 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::Division;
 use equilux_bake::treecode::Resolution;
+use equilux_formats::Rgb;
 use equilux_tests::levels::furnished;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::workshop::Workshop;
@@ -135,7 +136,7 @@ fn measured(job: &Job, is_viewed: bool) -> Measured {
 /// Tells of rounds as fast as that can be, of a scene that has been placed.
 fn fast_rounds(observer: &dyn Observer, report: &Report, lights: &AtomicUsize) -> (f64, f64) {
     let instances: Vec<usize> = (0..report.instances).collect();
-    let (radiosity, times) = (vec![[1.0; 3]; report.elements], StepTimes::none(report.instances));
+    let (radiosity, times) = (vec![Rgb::WHITE; report.elements], StepTimes::none(report.instances));
     let (start, before, mut number) = (Instant::now(), lights.load(Ordering::Relaxed), 0);
     while start.elapsed() < Duration::from_secs(2) {
         number += 1;

@@ -6,7 +6,7 @@ use equilux_assemble::lightmap::texels::{Texel, Texels};
 use equilux_assemble::lightmap::{Lightmap, Units};
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Instance, Part, Scene};
+use equilux_formats::{Instance, Part, Rgb, Scene};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, solid};
 use equilux_tests::workshop::Workshop;
@@ -38,8 +38,9 @@ fn a_valid_layout_is_kept_and_takes_light_without_bleeding() {
     let atlas = Atlas::new(&scene, Some(0.05)).expect("an atlas");
     assert_eq!((atlas.notes.len(), atlas.layouts[0].sheets.len()), (0, 2), "{:?}, and sheets", atlas.notes);
     // Light of its own for each side of each surface.
-    let light =
-        |texels: &Texels| vec![texels.patches[0].normal.to_array().map(|x| 2.0 + x); texels.texels.len()];
+    let light = |texels: &Texels| {
+        vec![Rgb(texels.patches[0].normal.to_array().map(|x| 2.0 + x)); texels.texels.len()]
+    };
     let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default()).expect("not stopped");
     let (mut area, mut bled) = (0.0, 0.0f64);
     for (number, tile) in lightmap.tiles.iter().enumerate() {

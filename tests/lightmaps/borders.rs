@@ -6,7 +6,9 @@ use equilux_assemble::lightmap::texels::Texels;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Instance, Material, Part, PartId, Scene, Texture, TexturedTriangle, Textures, Wrap};
+use equilux_formats::{
+    Instance, Material, Part, PartId, Rgb, Scene, Texture, TexturedTriangle, Textures, Wrap,
+};
 use equilux_tests::lit::{lightmap, lit_scene};
 use equilux_tests::shapes::{grey, part, quad, rectangle, solid, triangle};
 use glam::{DAffine3, DQuat, DVec3, dvec2, dvec3};
@@ -28,7 +30,7 @@ fn painted(mut part: Part) -> Part {
     let of = |corners| TexturedTriangle {
         material: equilux_formats::MaterialId(0),
         corners,
-        colours: [[1.0; 3]; 3],
+        colours: [Rgb([1.0; 3]); 3],
         reflectance_at: Some([dvec2(0.75, 0.5); 3]),
         emission_at: None,
     };

@@ -7,7 +7,7 @@ use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Material, Part};
+use equilux_formats::{Material, Part, Rgb};
 use equilux_tests::lit::{lightmap, lit_scene};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, joined, part, rectangle, solid};
@@ -135,7 +135,7 @@ fn a_readable_floor_under_an_even_sky_is_even() {
     let mut job = workshop.job(Division::Authored);
     job.outputs.lightmaps =
         Some(LightmapOptions { texel_size: Some(0.05), units: Units::Irradiance, directions: false });
-    job.settings.sky = Some(equilux_assemble::gather::sky::Sky::Uniform([1.0; 3]));
+    job.settings.sky = Some(equilux_assemble::gather::sky::Sky::Uniform(Rgb([1.0; 3])));
     job.outputs.pictures = Pictures::None;
     let report = assembled(&job);
     assert!(!report.notes.iter().any(|note| note.contains("TEXCOORD_1")), "kept: {:?}", report.notes);

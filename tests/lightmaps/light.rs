@@ -4,7 +4,7 @@ use super::{lookup, point_of, scene};
 use equilux_assemble::lightmap::Lightmap;
 use equilux_assemble::lightmap::atlas::Atlas;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::Scene;
+use equilux_formats::{Rgb, Scene};
 use equilux_tests::curved::sphere;
 use equilux_tests::shapes::{grey, joined, moved, part, solid, triangle};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
@@ -46,7 +46,7 @@ fn charts_do_not_bleed_into_each_other() {
     let lightmap = Lightmap::new(
         &scene,
         &atlas,
-        |texels| texels.texels.iter().map(|_| [white(texels.patches[0].normal); 3]).collect(),
+        |texels| texels.texels.iter().map(|_| Rgb::splat(white(texels.patches[0].normal))).collect(),
         &Monitor::default(),
     )
     .expect("not stopped");
@@ -67,8 +67,9 @@ fn charts_do_not_bleed_into_each_other() {
 fn even_light_stays_even_everywhere() {
     let scene = shapes();
     let atlas = Atlas::new(&scene, None).expect("an atlas");
-    let even =
-        |texels: &equilux_assemble::lightmap::texels::Texels| vec![[0.25, 0.5, 0.75]; texels.texels.len()];
+    let even = |texels: &equilux_assemble::lightmap::texels::Texels| {
+        vec![Rgb([0.25, 0.5, 0.75]); texels.texels.len()]
+    };
     let lightmap = Lightmap::new(&scene, &atlas, even, &Monitor::default()).expect("not stopped");
     for (tile, point, value) in lookups(&lightmap) {
         assert!((value - 0.5).abs() < 1e-14, "{value} at {point} of chart {tile}, expected 0.5");
@@ -83,7 +84,7 @@ fn a_lightmap_can_be_stopped_while_it_is_made() {
     let monitor = Monitor::default();
     let stops = |texels: &equilux_assemble::lightmap::texels::Texels| {
         monitor.stop();
-        vec![[1.0; 3]; texels.texels.len()]
+        vec![Rgb::WHITE; texels.texels.len()]
     };
     assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_err(), "stopped at its first texels");
     assert!(Lightmap::new(&scene, &atlas, stops, &monitor).is_ok(), "stopped long before");

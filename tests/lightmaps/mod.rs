@@ -44,8 +44,8 @@ fn lookup(lightmap: &Lightmap, tile: usize, plane: usize, point: DVec3) -> Rgb {
     let Tile { size, .. } = lightmap.tiles[tile];
     let (_, grid) = lightmap.atlas.chart_of(&lightmap.tiles[tile]);
     let weights = bilinear(grid.texel_of(plane, point), size[0]);
-    [0, 1, 2]
-        .map(|channel: usize| weights.iter().map(|&(i, w)| w * lightmap.irradiance[tile][i][channel]).sum())
+    Rgb([0, 1, 2]
+        .map(|channel: usize| weights.iter().map(|&(i, w)| w * lightmap.irradiance[tile][i][channel]).sum()))
 }
 
 /// A point of a convex polygon; `across` and `along` are in 0..1.

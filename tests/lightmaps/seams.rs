@@ -23,7 +23,7 @@ fn halves(tilt: f64, depth: f64) -> Part {
 fn with_a_jump(texels: &Texels) -> Vec<Rgb> {
     let ramp = |t: &equilux_assemble::lightmap::texels::Texel| f64::from(t.at[1]) * 0.02;
     let jump = 1.0 + f64::from(texels.material.0);
-    texels.texels.iter().map(|texel| [jump + ramp(texel); 3]).collect()
+    texels.texels.iter().map(|texel| Rgb::splat(jump + ramp(texel))).collect()
 }
 
 /// The largest difference of lookups along the piece of x = 1 that both charts have.
@@ -58,7 +58,7 @@ fn instances_that_touch_agree_too() {
     let beside = DAffine3::from_translation(DVec3::X);
     let scene = scene(tile, &[DAffine3::IDENTITY, beside]);
     let atlas = Atlas::new(&scene, Some(TEXEL)).expect("a small atlas");
-    let light = |texels: &Texels| vec![[texels.instance as f64; 3]; texels.texels.len()];
+    let light = |texels: &Texels| vec![Rgb::splat(texels.instance as f64); texels.texels.len()];
     let lightmap = Lightmap::new(&scene, &atlas, light, &Monitor::default()).expect("not stopped");
     let middle = [dvec3(1.0, 0.5, 0.0), dvec3(0.0, 0.5, 0.0)];
     let [left, right] = [0, 1].map(|tile: usize| lookup(&lightmap, tile, 0, middle[tile])[0]);

@@ -27,7 +27,7 @@ use std::f64::consts::PI;
 fn light(kind: LightKind, position: DVec3, direction: DVec3, intensity: f64) -> PunctualLight {
     let direction = direction.normalize();
     let (name, intensity, units) = ("light".into(), [intensity; 3], LightUnits::Radiometric);
-    PunctualLight { name, position, direction, intensity, units, kind, angle: 0.0 }
+    PunctualLight { name, position, direction, intensity: Rgb(intensity), units, kind, angle: 0.0 }
 }
 
 /// The parts in their places, elements of `size` metres.
@@ -47,7 +47,7 @@ fn placed(parts: Vec<Part>, size: f64) -> Lit {
 /// Average direct irradiance of all elements, first channel.
 fn direct(scene: &Lit, lights: &Lights) -> Vec<f64> {
     let world = &scene.placed.world;
-    let dark: Vec<Rgb> = vec![[0.0; 3]; world.elements.len()];
+    let dark: Vec<Rgb> = vec![Rgb::BLACK; world.elements.len()];
     let gather = Gather::new(&scene.placed, &dark, &dark, lights, EXACT);
     let planes: Vec<Plane> = world.elements.iter().map(|e| gather.faces().plane_of(e.face)).collect();
     let pieces: Vec<Piece> = world
@@ -56,7 +56,7 @@ fn direct(scene: &Lit, lights: &Lights) -> Vec<f64> {
         .zip(&planes)
         .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, plane })
         .collect();
-    gather.direct(&pieces, [0.0; 3]).iter().map(|h| h[0]).collect()
+    gather.direct(&pieces, Rgb::BLACK).iter().map(|h| h[0]).collect()
 }
 
 fn of_file(scene: &Lit, sources: &[PunctualLight]) -> Lights {
@@ -209,7 +209,7 @@ fn a_uniform_sky_lights_the_floor_of_an_open_box_through_its_opening() {
         Preparation { element_size: Some(ElementSize::Metres(0.5)), ..job.settings.preparation.clone() };
     let table = workshop.path("elements.csv");
     let mut job = job;
-    job.settings.sky = Some(Sky::Uniform([2.0; 3]));
+    job.settings.sky = Some(Sky::Uniform(Rgb([2.0; 3])));
     job.settings.preparation = preparation;
     job.outputs.elements = Some(table.clone());
     let report = assembled(&job);
@@ -239,7 +239,7 @@ fn a_uniform_sky_lights_the_floor_of_an_open_box_through_its_opening() {
     assert_eq!(floors, 16);
 
     let mut brighter = job;
-    brighter.settings.sky = Some(Sky::Uniform([4.0; 3]));
+    brighter.settings.sky = Some(Sky::Uniform(Rgb([4.0; 3])));
     let again = assembled(&brighter);
     assert_eq!(again.form_factors_computed, 0, "another sky");
     let ratio = Table::read(&table).number(0, "H_g") / found.number(0, "H_g");
@@ -308,7 +308,7 @@ fn a_texel_under_a_crate_is_dark_and_one_beside_it_is_not() {
             dvec3(x + size, 0.0, z),
         ];
         let pieces = [Piece { corners: &corners, normal: DVec3::Y, plane: &plane }];
-        gather.direct(&pieces, [1.0; 3])[0][0] + gather.reflected_over(&pieces, [1.0; 3])[0][0]
+        gather.direct(&pieces, Rgb([1.0; 3]))[0][0] + gather.reflected_over(&pieces, Rgb([1.0; 3]))[0][0]
     };
     for (x, z) in [(1.0, 1.0), (1.2, 1.3), (1.45, 1.45)] {
         assert_eq!(light(x, z, 0.05), 0.0, "under the crate at {x}, {z}");

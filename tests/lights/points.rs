@@ -26,7 +26,7 @@ fn a_point_of_the_floor_gets_the_inverse_square_of_a_lamp_or_nothing() {
     let scene = placed(vec![floor(), sheet], 0.5);
     let at = dvec3(0.3, 1.5, 0.1);
     let lights = of_file(&scene, &[light(LightKind::Point, at, DVec3::NEG_Y, 10.0)]);
-    let dark: Vec<Rgb> = vec![[0.0; 3]; scene.placed.world.elements.len()];
+    let dark: Vec<Rgb> = vec![Rgb::BLACK; scene.placed.world.elements.len()];
     let gather = Gather::new(&scene.placed, &dark, &dark, &lights, EXACT);
     let places = grid();
     let found = light_at(&gather, &scene.placed.world.elements, &places, &Monitor::default()).unwrap();

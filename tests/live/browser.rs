@@ -84,7 +84,7 @@ fn table(workshop: &Workshop) -> [Vec<Rgb>; 2] {
         line.split(',').take(19).map(|number| number.parse().expect("a number")).collect()
     };
     let rows: Vec<Vec<f64>> = text.lines().skip(1).map(row).collect();
-    [16, 10].map(|first| rows.iter().map(|row| [row[first], row[first + 1], row[first + 2]]).collect())
+    [16, 10].map(|first| rows.iter().map(|row| Rgb([row[first], row[first + 1], row[first + 2]])).collect())
 }
 
 /// How far a picture is from the one of this light, mean over all points and channels, in steps of 255.

@@ -6,7 +6,7 @@ use equilux_assemble::placed::Placed;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::prepare::{Division, Preparation};
 use equilux_bake::treecode::{EXACT, Resolution};
-use equilux_formats::Rows;
+use equilux_formats::{Rgb, Rows};
 use equilux_tests::lit::coupled;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{half, paint};
@@ -34,7 +34,7 @@ struct Thing {
 impl Thing {
     fn node(&self) -> Node {
         let mut material = paint([self.colour; 3]);
-        material.emission = [self.light; 3];
+        material.emission = Rgb([self.light; 3]);
         let half = self.size / 2.0;
         let mut boxes = vec![solid(material.clone(), -half, half)];
         if self.twofold {

@@ -17,7 +17,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
 use equilux_bake::prepare::PreparedPart;
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Scene, Store, Tints};
+use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Rgb, Scene, Store, Tints};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{lamp, paint};
 use equilux_tests::shapes::{coupling, joined, room, solid};
@@ -163,7 +163,7 @@ fn every_copy_is_an_instance_with_a_number_and_only_stretched_ones_are_another_p
     assert_eq!(found, [("crate #0", 0), ("crate #1", 0), ("crate #2", 1), ("crate #3", 1)]);
     assert_eq!((scene.parts[0].name.as_str(), scene.parts[1].name.as_str()), ("crate #0", "crate #2"));
     for instance in &scene.instances {
-        assert_eq!((instance.emission_scale, instance.repainted[0].reflectance), (0.5, [1.0, 0.0, 0.0]));
+        assert_eq!((instance.emission_scale, instance.repainted[0].reflectance), (0.5, Rgb([1.0, 0.0, 0.0])));
     }
     // Where the farthest corner of each comes to stand.
     let corners = [[2., 3., 2.], [6., 7., 8.], [8., 11., 8.], [1., 3., 1.]];

@@ -5,7 +5,7 @@ use equilux_assemble::exchange::settings::Method;
 use equilux_assemble::report::Report;
 use equilux_assemble::report::summary::{BLACK_ROWS, DARK_SOLVES, UNSEEN};
 use equilux_bake::prepare::Division;
-use equilux_formats::Material;
+use equilux_formats::{Material, Rgb};
 use equilux_tests::model::Node;
 use equilux_tests::rooms::{half, lamp, paint};
 use equilux_tests::shapes::{joined, room, solid};
@@ -19,7 +19,7 @@ fn count(report: &Report, reason: &str) -> usize {
 /// A room of two halves, the second of another reflectance, a lamp in the first, and a sealed box somewhere else.
 fn scene(reflectance: [f64; 3]) -> Vec<Node> {
     let light = solid(lamp([9.0; 3]), dvec3(0.5, 1.0, 0.5), dvec3(0.75, 1.25, 0.75));
-    let sealed = Material { emission: [1.0; 3], ..paint([0.5; 3]) };
+    let sealed = Material { emission: Rgb([1.0; 3]), ..paint([0.5; 3]) };
     vec![
         Node::new("dark half", half(paint(reflectance), 2.0)),
         Node::new("lit half", joined([half(paint([0.5; 3]), 0.0), light])),

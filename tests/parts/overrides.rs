@@ -3,7 +3,7 @@
 use equilux_assemble::report::Report;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::prepare::Division;
-use equilux_formats::{LocalSolver, Material};
+use equilux_formats::{LocalSolver, Material, Rgb};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{lamp, paint};
 use equilux_tests::shapes::{joined, room, solid};
@@ -76,7 +76,7 @@ fn a_repainted_instance_costs_no_form_factor_and_shines_as_a_repainted_copy() {
                 "lamp": { "emissiveFactor": [1, 1, 1], "emissiveStrength": 3 },
                 "shade": { "baseColorFactor": [0, 0.5, 0.25, 1], "emissiveFactor": [0, 0, 1] },
             } }),
-            Material { emission: [0.0, 0.0, PI / 2.0], ..paint([0.0, 0.5, 0.25]) },
+            Material { emission: Rgb([0.0, 0.0, PI / 2.0]), ..paint([0.0, 0.5, 0.25]) },
             lamp([1.5 * PI; 3]),
         ),
     ] {
@@ -146,9 +146,9 @@ fn a_repaint_below_a_root_is_worked_into_the_part() {
     let workshop = Workshop::new();
     model.write(&workshop.path("scene.glb"));
     let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
-    let shades: Vec<[f64; 3]> =
+    let shades: Vec<Rgb> =
         scene.parts[0].materials.iter().filter(|m| m.name == "shade").map(|m| m.reflectance).collect();
-    assert_eq!(shades, [[0.5; 3], [0.0, 0.0, 1.0]]);
+    assert_eq!(shades, [Rgb::splat(0.5), Rgb([0.0, 0.0, 1.0])]);
 }
 
 #[test]

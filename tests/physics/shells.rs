@@ -1,7 +1,7 @@
 //! Closed solids as modelling programs write them: two-sided or not, wound either way or both, mirrored, scaled. Forms that
 //! mean the same have the same light, none lets light through, and no row counts anything twice.
 
-use equilux_formats::{Corners, MaterialId, Part, Surface};
+use equilux_formats::{Corners, MaterialId, Part, Rgb, Surface};
 use equilux_tests::cases::solve::{Lit, Setting, Solved, light, solved_file, uniform};
 use equilux_tests::curved::{sphere, torus};
 use equilux_tests::model::{Model, Node};
@@ -107,7 +107,7 @@ fn formed(mut solid: Part, form: Form) -> Part {
 fn around(solid: &Part, form: Form, shine: f64) -> Solved {
     let white = grey(0.5, shine);
     let mut own = formed(solid.clone(), form);
-    own.materials.iter_mut().for_each(|material| material.emission = [shine; 3]);
+    own.materials.iter_mut().for_each(|material| material.emission = Rgb([shine; 3]));
     let lamp = rectangle(part(grey(0.5, 8.0)), dvec3(-0.75, 1.25, -0.5), DVec3::X * 1.5, DVec3::Z);
     let mut nodes =
         vec![Node::new("room", room(white, DVec3::splat(-1.5), DVec3::splat(1.5))), Node::new("solid", own)];

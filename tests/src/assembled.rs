@@ -64,7 +64,7 @@ impl Assembled {
     /// Reflectance of everything.
     pub fn paint(&mut self, reflectance: f64) {
         for optics in &mut self.optics {
-            optics.reflectance.fill([reflectance; 3]);
+            optics.reflectance.fill(Rgb([reflectance; 3]));
         }
         self.solve_locally(None);
     }

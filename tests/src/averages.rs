@@ -50,7 +50,7 @@ pub fn compared(name: &str, size: f64, tolerance: f64) -> Compared {
 
     let truth = Table::read(&folder.join("truth.csv"));
     let places = elements.iter().map(|e| (e.centroid, e.normal)).collect();
-    let found = gathered(&truth, places, |row| (elements[row].area, light[row]));
+    let found = gathered(&truth, places, |row| (elements[row].area, light[row].0));
     let errors = [0, 1, 2].map(|channel: usize| {
         let colour = ["r", "g", "b"][channel];
         Errors::of(&truth, &found, ["Ha", "Ha_se"].map(|k| format!("{k}_{colour}")), channel)
@@ -78,7 +78,7 @@ pub fn averages(lit: &Lit, elements: &[Element], resolution: Resolution) -> Vec<
         projected.iter().map(|p| Piece { corners: &p.corners, normal: p.normal, plane: &p.plane }).collect();
     let direct = gather.direct(&pieces, mean);
     let reflected = gather.reflected_over(&pieces, mean);
-    direct.iter().zip(reflected).map(|(d, r)| [d[0] + r[0], d[1] + r[1], d[2] + r[2]]).collect()
+    direct.iter().zip(reflected).map(|(&d, r)| d + r).collect()
 }
 
 /// An element in the plane of a face of the scene.
@@ -114,6 +114,5 @@ fn outside(element: &Element, point: DVec3) -> f64 {
 
 /// The mean of values.
 pub fn mean(values: &[Rgb]) -> Rgb {
-    let sum = values.iter().fold([0.0; 3], |sum: Rgb, v| [sum[0] + v[0], sum[1] + v[1], sum[2] + v[2]]);
-    sum.map(|s| s / values.len() as f64)
+    values.iter().copied().sum::<Rgb>() / values.len() as f64
 }

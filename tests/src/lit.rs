@@ -21,7 +21,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
 use equilux_bake::prepare::{Preparation, prepare};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Optics, Scene, Store};
+use equilux_formats::{Optics, Rgb, Scene, Store};
 use std::path::Path;
 
 /// The parts of a scene in their places, and their light.
@@ -58,7 +58,7 @@ pub fn lit_scene(scene: &Scene, wanted: &Preparation) -> Lit {
 
 /// The lightmap of a scene in this light and that of the sky, W/(m² sr), from all around.
 pub fn lightmap<'a>(scene: &'a Scene, atlas: &'a Atlas, lit: &Lit, sky: f64) -> Lightmap<'a> {
-    let radiances = Radiances::Uniform([sky; 3]);
+    let radiances = Radiances::Uniform(Rgb([sky; 3]));
     let lights = lights(&[], None, Some(&radiances), &lit.placed.world);
     let gather = Gather::new(&lit.placed, &lit.optics.emission, &lit.outcome.radiosity, &lights, EXACT);
     let light = TexelLight::new(&gather, mean(&lit.outcome.irradiance));

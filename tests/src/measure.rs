@@ -3,7 +3,7 @@
 use crate::levels::furnished;
 use equilux_assemble::classic::rays::row;
 use equilux_bake::elements::{ElementSize, subdivide};
-use equilux_bake::equilibrium::{added, apply, scaled};
+use equilux_bake::equilibrium::apply;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, Request, Resolution, block};
 use equilux_bake::visibility::rays::RayIndex;
@@ -74,11 +74,8 @@ impl Level {
         loop {
             let nodes = self.means(&radiosity);
             let irradiance = blocks.iter().flat_map(|block| apply(block, &nodes));
-            let next: Vec<Rgb> = irradiance
-                .zip(reflectance)
-                .zip(emission)
-                .map(|((h, &rho), &e)| added(e, scaled(rho, h)))
-                .collect();
+            let next: Vec<Rgb> =
+                irradiance.zip(reflectance).zip(emission).map(|((h, &rho), &e)| e + rho * h).collect();
             let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
             let change = most(&mut next.iter().zip(&radiosity).map(|(a, b)| (a[0] - b[0]).abs()));
             let brightest = most(&mut next.iter().map(|b| b[0]));

@@ -1,6 +1,6 @@
 //! Parts made by hand as glTF files: in go nodes, each with a part, its place and extras; out comes a `.glb` file.
 
-use equilux_formats::{Material, MaterialId, Part, Surface};
+use equilux_formats::{Material, MaterialId, Part, Rgb, Surface, glb};
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
@@ -84,14 +84,7 @@ impl Model {
 
     /// The bytes of the `.glb` file.
     pub fn bytes(&self) -> Vec<u8> {
-        let mut json = self.json.to_string().into_bytes();
-        json.resize(json.len().next_multiple_of(4), b' ');
-        let number = |value: usize| (value as u32).to_le_bytes().to_vec();
-        let length = 12 + 8 + json.len() + 8 + self.binary.len();
-        let head = [b"glTF".to_vec(), number(2), number(length)].concat();
-        let json = [number(json.len()), b"JSON".to_vec(), json].concat();
-        let binary = [number(self.binary.len()), b"BIN\0".to_vec(), self.binary.clone()].concat();
-        [head, json, binary].concat()
+        glb::file(self.json.to_string().as_bytes(), &self.binary).expect("a file of less than 4 GiB")
     }
 
     /// Write the `.glb` file.
@@ -164,11 +157,11 @@ fn gltf_material(material: &Material) -> Value {
     let radiance = material.emission.map(|e| e / PI);
     // glTF wants emissive factors in 0..1, and their strength apart.
     let strength = radiance.iter().fold(1.0, |most: f64, &l| most.max(l));
-    let [r, g, b] = material.reflectance;
+    let Rgb([r, g, b]) = material.reflectance;
     json!({
         "name": material.name,
         "pbrMetallicRoughness": { "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0 },
-        "emissiveFactor": radiance.map(|l| l / strength),
+        "emissiveFactor": radiance / strength,
         "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": strength } },
         "doubleSided": material.double_sided,
     })

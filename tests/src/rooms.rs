@@ -2,15 +2,15 @@
 
 use crate::model::Node;
 use crate::shapes::{joined, part, rectangle, room, solid};
-use equilux_formats::{Material, Part, Textures};
+use equilux_formats::{Material, Part, Rgb, Textures};
 use glam::{DVec3, dvec3};
 
 /// A material of this reflectance, channel by channel, without emission.
 pub fn paint(reflectance: [f64; 3]) -> Material {
     Material {
         name: "paint".into(),
-        reflectance,
-        emission: [0.0; 3],
+        reflectance: Rgb(reflectance),
+        emission: Rgb::BLACK,
         double_sided: false,
         textures: Textures::default(),
     }
@@ -18,7 +18,7 @@ pub fn paint(reflectance: [f64; 3]) -> Material {
 
 /// A dark lamp of this emission, W/m².
 pub fn lamp(emission: [f64; 3]) -> Material {
-    Material { name: "lamp".into(), emission, ..paint([0.1; 3]) }
+    Material { name: "lamp".into(), emission: Rgb(emission), ..paint([0.1; 3]) }
 }
 
 /// A room of 4 × 3 × 3 m with a lamp, a table on legs and a crate, each a part of its own. The table's parts hide each
@@ -48,7 +48,7 @@ pub fn furnished() -> Vec<Node> {
 /// A white room cut open at x = 2 m: two open boxes that only absorb what `absorbed` leaves.
 pub fn echoing(absorbed: f64) -> Vec<Node> {
     let white = paint([1.0 - absorbed; 3]);
-    let light = Material { emission: [3.0; 3], ..white.clone() };
+    let light = Material { emission: Rgb([3.0; 3]), ..white.clone() };
     let lit = joined([half(white.clone(), 0.0), solid(light, dvec3(0.5, 1.0, 0.5), dvec3(0.75, 1.25, 0.75))]);
     vec![Node::new("lit half", lit), Node::new("dark half", half(white, 2.0))]
 }

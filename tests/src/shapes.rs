@@ -4,15 +4,15 @@ use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rows, Surface, Textures};
+use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rgb, Rows, Surface, Textures};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// A grey material: reflectance and emission the same in all channels.
 pub fn grey(reflectance: f64, emission: f64) -> Material {
     Material {
         name: String::new(),
-        reflectance: [reflectance; 3],
-        emission: [emission; 3],
+        reflectance: Rgb([reflectance; 3]),
+        emission: Rgb([emission; 3]),
         double_sided: false,
         textures: Textures::default(),
     }

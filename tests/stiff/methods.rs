@@ -33,7 +33,7 @@ prop_compose! {
         let solids = boxes.into_iter().enumerate().map(|(k, (reflectance, angle, centre, power))| {
             let mut material = paint(reflectance);
             let light = power.map_or(f64::from(u8::from(k == 0)), |power| 10f64.powi(power));
-            material.emission = [light, 0.5 * light, 0.0];
+            material.emission = Rgb([light, 0.5 * light, 0.0]);
             let turn = DQuat::from_axis_angle(dvec3(0.3, 0.8, -0.5).normalize(), angle);
             let place = DAffine3::from_rotation_translation(turn, DVec3::from(centre));
             moved(solid(material, DVec3::splat(-0.2), dvec3(0.2, 0.3, 0.25)), place)
@@ -55,13 +55,11 @@ fn assembled(scene: &Part, cells: usize, solver: LocalSolver) -> Assembled {
 
 /// Largest difference in each channel.
 fn difference(a: &[Rgb], b: &[Rgb]) -> Rgb {
-    a.iter()
-        .zip(b)
-        .fold([0.0; 3], |most: Rgb, (a, b)| std::array::from_fn(|c| most[c].max((a[c] - b[c]).abs())))
+    a.iter().zip(b).fold(Rgb::BLACK, |most, (&a, &b)| most.max((a - b).abs()))
 }
 
 fn brightest(light: &[Rgb]) -> Rgb {
-    difference(light, &vec![[0.0; 3]; light.len()])
+    difference(light, &vec![Rgb::BLACK; light.len()])
 }
 
 proptest! {

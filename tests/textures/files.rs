@@ -5,7 +5,7 @@ use equilux_assemble::lightmap::Lightmap;
 use equilux_assemble::lightmap::atlas::Atlas;
 use equilux_assemble::lightmap::texels::{Texels, bilinear};
 use equilux_bake::monitor::Monitor;
-use equilux_formats::Material;
+use equilux_formats::{Material, Rgb};
 use equilux_tests::shapes::room;
 use equilux_tests::workshop::assembled;
 
@@ -103,7 +103,7 @@ fn lightmaps_show_what_is_painted() {
     model.write(&workshop.path("scene.glb"));
     let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
     let atlas = Atlas::new(&scene, Some(0.05)).expect("a small atlas");
-    let lit = |texels: &Texels| vec![[2.0; 3]; texels.texels.len()];
+    let lit = |texels: &Texels| vec![Rgb::splat(2.0); texels.texels.len()];
     let lightmap = Lightmap::new(&scene, &atlas, lit, &Monitor::default()).expect("not stopped");
     assert_eq!(lightmap.tiles.len(), 1);
     let (_, grid) = atlas.chart_of(&lightmap.tiles[0]);

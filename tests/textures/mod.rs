@@ -92,16 +92,16 @@ fn prepared(workshop: &Workshop, element_size: ElementSize, division: Division) 
 
 /// Averages over the area of all elements: reflectance and emission.
 fn averages(prepared: &Prepared) -> [Rgb; 2] {
-    let (mut area, mut sums) = (0.0, [[0.0; 3]; 2]);
+    let (mut area, mut sums) = (0.0, [Rgb::BLACK; 2]);
     for part in &prepared.parts {
         for (i, element) in part.geometry.elements.iter().enumerate() {
             area += element.area;
             for (sum, values) in sums.iter_mut().zip([&part.optics.reflectance, &part.optics.emission]) {
-                sum.iter_mut().zip(values[i]).for_each(|(sum, value)| *sum += element.area * value);
+                *sum += values[i] * element.area;
             }
         }
     }
-    sums.map(|sum| sum.map(|sum| sum / area))
+    sums.map(|sum| sum / area)
 }
 
 /// The reflectance of a wall in `workshop`, red.

@@ -1,6 +1,6 @@
 //! Faces that lie on each other in one plane count once, whether they are of one part, of several, or copies of one.
 
-use equilux_formats::Part;
+use equilux_formats::{Part, Rgb};
 use equilux_tests::cases::solve::{Lit, Setting, Solved, solved_file};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, joined, part, rectangle, room};
@@ -135,7 +135,7 @@ fn a_two_sided_sheet_keeps_the_side_that_nothing_lies_on() {
             area(1.0),
             area(-1.0)
         );
-        let worst = found.worst(|_| [1.0; 3]);
+        let worst = found.worst(|_| Rgb([1.0; 3]));
         assert!(worst.error < 1e-6, "{order}: {} in a furnace of {}", worst.got, worst.expected);
     }
 }

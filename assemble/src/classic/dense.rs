@@ -4,7 +4,6 @@
 use super::rays;
 use equilux_bake::equilibrium::endless::endless_light;
 use equilux_bake::equilibrium::krylov::gmres;
-use equilux_bake::equilibrium::{added, scaled, subtract};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::visibility::rays::RayIndex;
@@ -81,9 +80,8 @@ impl Dense {
 
     /// H = F B, W/m².
     pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
-        let gathered = |row: &[f64]| {
-            row.iter().zip(radiosity).fold([0.0; 3], |sum, (&f, b)| added(sum, b.map(|b| f * b)))
-        };
+        let gathered =
+            |row: &[f64]| row.iter().zip(radiosity).fold(Rgb::BLACK, |sum, (&f, b)| sum + b.map(|b| f * b));
         // Chunks of no length are not allowed, and a scene may be empty.
         self.values.par_chunks(self.size.max(1)).map(gathered).collect()
     }
@@ -93,7 +91,7 @@ impl Dense {
         let Optics { reflectance, emission } = optics;
         let without_reflection = |b: &[Rgb]| -> Vec<Rgb> {
             let irradiance = self.irradiance(b);
-            (0..b.len()).map(|i| subtract(b[i], scaled(reflectance[i], irradiance[i]))).collect()
+            (0..b.len()).map(|i| b[i] - reflectance[i] * irradiance[i]).collect()
         };
         let mut radiosity = emission.clone();
         gmres(without_reflection, |r| r.to_vec(), emission, &mut radiosity, RESIDUAL);

@@ -5,7 +5,6 @@
 //! over elements and only nearly for centroids, so the light differs a little from that of the matrix.
 
 use super::Solved;
-use equilux_bake::equilibrium::{added, scaled};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::world::World;
@@ -30,7 +29,7 @@ pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> 
         world,
         optics,
         radiosity: optics.emission.clone(),
-        irradiance: vec![[0.0; 3]; elements.len()],
+        irradiance: vec![Rgb::BLACK; elements.len()],
         unshot: optics.emission.clone(),
         time: Duration::ZERO,
     };
@@ -67,11 +66,11 @@ impl Light<'_> {
             for (node, seen) in timed.block.row(k) {
                 let i = world.element_of(node).expect("an exact row names elements");
                 let form_factor = seen * shooter.area / world.elements[i].area;
-                let arrived = sent.map(|b| b * form_factor);
-                let reflected = scaled(self.optics.reflectance[i], arrived);
-                self.irradiance[i] = added(self.irradiance[i], arrived);
-                self.radiosity[i] = added(self.radiosity[i], reflected);
-                self.unshot[i] = added(self.unshot[i], reflected);
+                let arrived = sent * form_factor;
+                let reflected = self.optics.reflectance[i] * arrived;
+                self.irradiance[i] += arrived;
+                self.radiosity[i] += reflected;
+                self.unshot[i] += reflected;
             }
         }
         Ok(())

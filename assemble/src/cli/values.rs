@@ -4,6 +4,7 @@ use crate::gather::sky::Sky;
 use crate::proof::sample::ExactRows;
 use equilux_bake::cli::length::in_metres;
 use equilux_bake::gltf_import::scenes_in;
+use equilux_formats::Rgb;
 use glam::DVec3;
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
@@ -19,9 +20,9 @@ pub fn exact_rows(text: &str) -> Result<ExactRows, String> {
 pub fn sky(text: &str) -> Result<Sky, String> {
     let numbers: Vec<Option<f64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
     match numbers[..] {
-        [Some(all)] if all >= 0.0 && all.is_finite() => Ok(Sky::Uniform([all; 3])),
+        [Some(all)] if all >= 0.0 && all.is_finite() => Ok(Sky::Uniform(Rgb::splat(all))),
         [Some(r), Some(g), Some(b)] if [r, g, b].iter().all(|l| *l >= 0.0 && l.is_finite()) => {
-            Ok(Sky::Uniform([r, g, b]))
+            Ok(Sky::Uniform(Rgb([r, g, b])))
         }
         [None] => Ok(Sky::Picture(text.into())),
         _ => Err("a sky is one number or three with commas between them, 0 or more, or a picture".into()),

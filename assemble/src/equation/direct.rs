@@ -9,7 +9,7 @@ use crate::gather::lights::Lights;
 use crate::gather::piece::Piece;
 use crate::placed::Placed;
 use equilux_bake::cached::cached;
-use equilux_bake::equilibrium::{added, apply};
+use equilux_bake::equilibrium::apply;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Element, Optics, Result, Rgb, Rows};
@@ -30,7 +30,7 @@ const NOTHING: f64 = 1e-9;
 /// D of all elements. Fails if the monitor was stopped.
 pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
     let placed = coupler.placed;
-    let dark = vec![[0.0; 3]; placed.world.elements.len()];
+    let dark = vec![Rgb::BLACK; placed.world.elements.len()];
     if lights.is_empty() {
         return Ok(Direct { irradiance: placed.split(&dark), computed: 0, unlit: vec![] });
     }
@@ -52,7 +52,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
             if new == 0 {
                 coupler.monitor.spare(own.len() as f64);
             }
-            own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum = added(*sum, h));
+            own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum += h);
         }
     }
     Ok(Direct { irradiance, computed, unlit })
@@ -69,13 +69,13 @@ struct Arriving {
 impl Arriving {
     /// Adds the irradiance of these elements from a lamp that could send them at most `power`, W.
     fn add(&mut self, name: &str, power: Rgb, elements: &[Element], irradiance: &[Rgb]) {
-        let mut arrived = [0.0; 3];
+        let mut arrived = Rgb::BLACK;
         for ((sum, element), &h) in self.irradiance.iter_mut().zip(elements).zip(irradiance) {
-            *sum = added(*sum, h);
-            arrived = added(arrived, h.map(|h| h * element.area));
+            *sum += h;
+            arrived += h * element.area;
         }
         let is_lost = |(arrived, power): (f64, f64)| arrived <= NOTHING * power;
-        if power != [0.0; 3] && arrived.into_iter().zip(power).all(is_lost) {
+        if power != Rgb::BLACK && arrived.into_iter().zip(power).all(is_lost) {
             self.unlit.push(name.to_owned());
         }
     }
@@ -84,7 +84,7 @@ impl Arriving {
 /// The light of lamps and suns, averaged over each element.
 fn of_lamps(placed: &Placed, lights: &Lights) -> Arriving {
     let elements = &placed.world.elements;
-    let dark = vec![[0.0; 3]; elements.len()];
+    let dark = vec![Rgb::BLACK; elements.len()];
     let mut arriving = Arriving { irradiance: dark.clone(), unlit: vec![] };
     let gather = |lights: &Lights| Gather::new(placed, &dark, &dark, lights, EXACT);
     let none = gather(&Lights::default());
@@ -99,7 +99,7 @@ fn of_lamps(placed: &Placed, lights: &Lights) -> Arriving {
     }
     for sun in &lights.suns {
         let alone = gather(&Lights { suns: vec![sun.clone()], ..Lights::default() });
-        arriving.add(&sun.name, sun.power, elements, &alone.direct(&pieces, [0.0; 3]));
+        arriving.add(&sun.name, sun.power, elements, &alone.direct(&pieces, Rgb::BLACK));
     }
     arriving
 }
@@ -130,11 +130,11 @@ fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> R
 /// The same optics with what elements reflect of D as emission: what drives the exchange.
 pub fn driven(optics: &Optics, direct: &[Rgb]) -> Optics {
     let rows = optics.emission.iter().zip(&optics.reflectance).zip(direct);
-    let emission = rows.map(|((e, rho), d)| std::array::from_fn(|c| e[c] + rho[c] * d[c])).collect();
+    let emission = rows.map(|((&e, &rho), &d)| e + rho * d).collect();
     Optics { emission, reflectance: optics.reflectance.clone() }
 }
 
 /// H with D.
 pub fn with_direct(irradiance: &mut [Rgb], direct: &[Vec<Rgb>]) {
-    irradiance.iter_mut().zip(direct.iter().flatten()).for_each(|(h, &d)| *h = added(*h, d));
+    irradiance.iter_mut().zip(direct.iter().flatten()).for_each(|(h, &d)| *h += d);
 }

@@ -15,7 +15,7 @@ pub struct ActiveRows {
 impl ActiveRows {
     /// All groups with a receiver that is not black.
     pub fn of(system: &InstanceSystem) -> Self {
-        let reflects = |i: usize| system.optics.reflectance[i] != [0.0; 3];
+        let reflects = |i: usize| system.optics.reflectance[i] != Rgb::BLACK;
         let of = |block: &Rows| -> Vec<bool> {
             (0..block.groups()).map(|group| block.receivers_of(group).any(reflects)).collect()
         };
@@ -50,7 +50,7 @@ fn gather(block: &Rows, active: &[bool], values: &[Rgb]) -> Vec<Rgb> {
         if active[group] {
             block.gather_group(group, values)
         } else {
-            vec![[0.0; 3]; block.receivers_of(group).len()]
+            vec![Rgb::BLACK; block.receivers_of(group).len()]
         }
     };
     (0..block.groups()).into_par_iter().flat_map_iter(of).collect()

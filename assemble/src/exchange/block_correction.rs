@@ -7,7 +7,6 @@
 
 use crate::exchange::groups::Group;
 use crate::exchange::step_times::StepTimes;
-use equilux_bake::equilibrium::{added, scaled};
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -57,8 +56,8 @@ impl<'a> BlockCorrection<'a> {
         let group = self.group;
         let count = group.members.len();
         let mut light =
-            Light { all: vec![[0.0; 3]; group.scene_senders()], lit: vec![start.is_some(); count] };
-        let mut correction = start.unwrap_or_else(|| vec![[0.0; 3]; missing.len()]);
+            Light { all: vec![Rgb::BLACK; group.scene_senders()], lit: vec![start.is_some(); count] };
+        let mut correction = start.unwrap_or_else(|| vec![Rgb::BLACK; missing.len()]);
         for member in (0..count).filter(|&m| light.lit[m]) {
             group.send(member, &correction[group.elements_of(member)], &mut light.all);
         }
@@ -81,16 +80,13 @@ impl<'a> BlockCorrection<'a> {
         }
         let image = |m: usize| -> Vec<Rgb> {
             let missing = missing[group.elements_of(m)].iter().zip(&left[m]);
-            let solved = missing.map(|(&v, &left)| -> Rgb { std::array::from_fn(|c| v[c] - left[c]) });
+            let solved = missing.map(|(&v, &left)| v - left);
             if !self.is_stale(m) {
                 return solved.collect();
             }
             let changes = heard[m].iter().zip(self.hear(m, &light, times));
             let rows = solved.zip(&group.system(m).optics.reflectance).zip(changes);
-            rows.map(|((v, rho), (before, now))| {
-                std::array::from_fn(|c| v[c] + rho[c] * (before[c] - now[c]))
-            })
-            .collect()
+            rows.map(|((v, &rho), (&before, now))| v + rho * (before - now)).collect()
         };
         let image = (0..count).flat_map(image).collect();
         (correction, image)
@@ -99,7 +95,7 @@ impl<'a> BlockCorrection<'a> {
     /// Irradiance from the other members; nothing is gathered in the dark.
     fn hear(&self, member: usize, light: &Light, times: &mut StepTimes) -> Vec<Rgb> {
         if !self.group.sees[member].iter().any(|&sender| light.lit[sender]) {
-            return vec![[0.0; 3]; self.group.elements_of(member).len()];
+            return vec![Rgb::BLACK; self.group.elements_of(member).len()];
         }
         let start = Instant::now();
         let arriving = self.group.arriving(member, &light.all);
@@ -116,8 +112,8 @@ impl<'a> BlockCorrection<'a> {
         let start = Instant::now();
         let system = self.group.system(member);
         let rows = missing.iter().zip(&system.optics.reflectance).zip(heard);
-        let sources: Vec<Rgb> = rows.map(|((&v, &rho), &h)| added(v, scaled(rho, h))).collect();
-        let dark = vec![[0.0; 3]; sources.len()];
+        let sources: Vec<Rgb> = rows.map(|((&v, &rho), &h)| v + rho * h).collect();
+        let dark = vec![Rgb::BLACK; sources.len()];
         let idle = sources == dark;
         let (correction, left) = match self.share {
             _ if idle => (dark.clone(), dark),

@@ -10,7 +10,7 @@ use crate::exchange::coarse::Coarse;
 use crate::exchange::groups::Group;
 use crate::exchange::step_times::StepTimes;
 use equilux_bake::equilibrium::krylov::Space;
-use equilux_bake::equilibrium::{added, largest, scaled};
+use equilux_bake::equilibrium::largest;
 use equilux_formats::Rgb;
 
 /// Where the element that loses least loses less than this share of the mean, w = 1 is given up.
@@ -39,7 +39,7 @@ pub struct Margin {
 impl Margin {
     /// The margin of a group's elements; parts take `turns` where w has to be found.
     pub fn of(group: &Group, coarse: Option<&Coarse>, turns: usize) -> Self {
-        let constant = Self::by(group, vec![[1.0; 3]; group.elements()]);
+        let constant = Self::by(group, vec![Rgb::WHITE; group.elements()]);
         if constant.is_even() {
             return constant;
         }
@@ -62,7 +62,7 @@ impl Margin {
         let holds: [bool; 3] = std::array::from_fn(holds);
         let choose = |constant: Vec<Rgb>, better: &[Rgb]| -> Vec<Rgb> {
             let pairs = constant.iter().zip(better);
-            pairs.map(|(a, b)| std::array::from_fn(|c| if holds[c] { b[c] } else { a[c] })).collect()
+            pairs.map(|(a, b)| Rgb::from_fn(|c| if holds[c] { b[c] } else { a[c] })).collect()
         };
         Self { vector: choose(self.vector, &better.vector), image: choose(self.image, &better.image) }
     }
@@ -87,18 +87,18 @@ impl Margin {
     /// computing a residual.
     pub fn sharp_bound(&self, group: &Group, residual: &[Rgb], radiosity: &[Rgb]) -> Rgb {
         let mut bounce = sizes(residual, radiosity);
-        let mut sum = vec![[0.0; 3]; bounce.len()];
+        let mut sum = vec![Rgb::BLACK; bounce.len()];
         let mut best = self.bound(residual, radiosity);
         loop {
-            sum.iter_mut().zip(&bounce).for_each(|(sum, &s)| *sum = added(*sum, s));
+            sum.iter_mut().zip(&bounce).for_each(|(sum, &s)| *sum += s);
             let reflected = group.irradiance(&bounce);
             let rows = group.systems().flat_map(|system| &system.optics.reflectance).zip(reflected);
-            bounce = rows.map(|(&rho, h)| scaled(rho, h)).collect();
+            bounce = rows.map(|(&rho, h)| rho * h).collect();
             let factor = self.factor_of(&bounce);
-            let found = sum.iter().zip(&self.vector).map(|(&sum, &w)| added(sum, times(factor, w)));
+            let found = sum.iter().zip(&self.vector).map(|(&sum, &w)| sum + times(factor, w));
             let found = largest(&found.collect::<Vec<_>>());
             let pays = (0..3).any(|c| found[c] < WORTH * best[c]);
-            best = std::array::from_fn(|c| best[c].min(found[c]));
+            best = Rgb::from_fn(|c| best[c].min(found[c]));
             if !pays {
                 return best;
             }
@@ -112,29 +112,30 @@ impl Margin {
             _ if aw > 0.0 => size / aw,
             _ => f64::INFINITY,
         };
-        self.image.iter().zip(sizes).fold([0.0; 3], |most: Rgb, (aw, size)| {
-            std::array::from_fn(|c| most[c].max(quotient(size[c], aw[c])))
-        })
+        self.image
+            .iter()
+            .zip(sizes)
+            .fold(Rgb::BLACK, |most: Rgb, (aw, size)| Rgb::from_fn(|c| most[c].max(quotient(size[c], aw[c]))))
     }
 }
 
 /// θ w; nothing of nothing, even where w is without bound.
 fn times(factor: Rgb, w: Rgb) -> Rgb {
-    std::array::from_fn(|c| if factor[c] == 0.0 { 0.0 } else { factor[c] * w[c] })
+    Rgb::from_fn(|c| if factor[c] == 0.0 { 0.0 } else { factor[c] * w[c] })
 }
 
 /// |r| with what rounding may hide of it.
 fn sizes(residual: &[Rgb], radiosity: &[Rgb]) -> Vec<Rgb> {
     let pairs = residual.iter().zip(radiosity);
-    pairs.map(|(r, b)| std::array::from_fn(|c| r[c].abs() + ROUNDINGS * b[c].abs())).collect()
+    pairs.map(|(r, b)| Rgb::from_fn(|c| r[c].abs() + ROUNDINGS * b[c].abs())).collect()
 }
 
 /// w with |A w − 1| ≤ [`ROUGH`] everywhere; none if that takes too long.
 fn solved(group: &Group, coarse: Option<&Coarse>, turns: usize) -> Option<Vec<Rgb>> {
     let mut sweep = BlockCorrection::new(group, turns, Some(ROUGH / 10.0));
     let mut times = StepTimes::none(group.scene_instances());
-    let mut vector = vec![[0.0; 3]; group.elements()];
-    let mut missing = vec![[1.0; 3]; group.elements()];
+    let mut vector = vec![Rgb::BLACK; group.elements()];
+    let mut missing = vec![Rgb::WHITE; group.elements()];
     let is_found = |missing: &[Rgb]| largest(missing).into_iter().all(|left| left <= ROUGH);
     for _ in 0..PATIENCE {
         let mut space = Space::new(&missing);
@@ -144,7 +145,7 @@ fn solved(group: &Group, coarse: Option<&Coarse>, turns: usize) -> Option<Vec<Rg
             space.add(z, az);
             missing = space.residual();
         }
-        vector.iter_mut().zip(space.correction()).for_each(|(w, z)| *w = added(*w, z));
+        vector.iter_mut().zip(space.correction()).for_each(|(w, z)| *w += z);
         if is_found(&missing) {
             return Some(vector);
         }

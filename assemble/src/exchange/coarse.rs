@@ -7,7 +7,6 @@
 use crate::exchange::groups::{Group, ranges};
 use crate::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::direct::{factorise_dense, solve};
-use equilux_bake::equilibrium::{added, scaled};
 use equilux_formats::{Factors, Rgb};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -58,7 +57,7 @@ impl<'a> Coarse<'a> {
             let mut entries: Vec<Rgb> =
                 coupling[member][first * size..][..size].iter().map(|entry| entry.map(|f| -f)).collect();
             let inside = &answers.matrix[first * count..][..own.len()];
-            entries[own.clone()].iter_mut().zip(inside).for_each(|(entry, &own)| *entry = added(*entry, own));
+            entries[own.clone()].iter_mut().zip(inside).for_each(|(entry, &own)| *entry += own);
             for channel in (0..3).filter(|&c| inside[first][c] == 0.0) {
                 // An answer that this channel does not have.
                 entries.iter_mut().for_each(|entry| entry[channel] = 0.0);
@@ -79,12 +78,12 @@ impl<'a> Coarse<'a> {
     pub fn correct(&self, missing: &[Rgb]) -> Option<Vec<Rgb>> {
         let members = || (0..self.group.members.len()).into_par_iter();
         let missed: Vec<Rgb> = members().flat_map_iter(|m| self.missed_by(m, missing)).collect();
-        if missed.iter().all(|missed| *missed == [0.0; 3]) {
+        if missed.iter().all(|missed| *missed == Rgb::BLACK) {
             return None;
         }
         let shares = solve(&self.factors, &missed);
         // Where nothing takes light out of the scene, the coarse equation has no solution either.
-        let finite = shares.as_flattened().iter().all(|share| share.is_finite());
+        let finite = shares.iter().all(|share| share.iter().all(|share| share.is_finite()));
         finite.then(|| members().flat_map_iter(|m| self.sum_of_answers(m, &shares)).collect())
     }
 
@@ -94,18 +93,18 @@ impl<'a> Coarse<'a> {
         let missing = &missing[self.group.elements_of(member)];
         let product = |answer: &Vec<Rgb>| {
             let terms = answer.iter().zip(missing).enumerate();
-            terms.fold([0.0; 3], |sum, (i, (&a, &v))| {
-                added(sum, scaled(a, v).map(|av| av * system.clusters.area_of(i)))
+            terms.fold(Rgb::BLACK, |sum, (i, (&a, &v))| {
+                sum + (a * v).map(|av| av * system.clusters.area_of(i))
             })
         };
         system.answers.radiosity[..self.unknowns[member].len()].iter().map(product).collect()
     }
 
     fn sum_of_answers(&self, member: usize, shares: &[Rgb]) -> Vec<Rgb> {
-        let mut sum = vec![[0.0; 3]; self.group.elements_of(member).len()];
+        let mut sum = vec![Rgb::BLACK; self.group.elements_of(member).len()];
         let answers = &self.group.system(member).answers.radiosity;
         for (&share, answer) in shares[self.unknowns[member].clone()].iter().zip(answers) {
-            sum.iter_mut().zip(answer).for_each(|(sum, &a)| *sum = added(*sum, scaled(share, a)));
+            sum.iter_mut().zip(answer).for_each(|(sum, &a)| *sum += share * a);
         }
         sum
     }
@@ -115,7 +114,7 @@ impl<'a> Coarse<'a> {
 fn coupling(group: &Group, unknowns: &[Range<usize>]) -> Vec<Vec<Rgb>> {
     let sent = |m: usize| -> Vec<[Rgb; ANSWERS]> {
         let system = group.system(m);
-        let mut sent = vec![[[0.0; 3]; ANSWERS]; system.clusters.nodes()];
+        let mut sent = vec![[Rgb::BLACK; ANSWERS]; system.clusters.nodes()];
         for (k, answer) in system.answers.radiosity[..unknowns[m].len()].iter().enumerate() {
             sent.iter_mut().zip(system.clusters.means(answer)).for_each(|(sent, mean)| sent[k] = mean);
         }
@@ -135,7 +134,7 @@ fn received_by(
     let system = group.system(member);
     let answers = &system.answers.radiosity[..unknowns[member].len()];
     let size = unknowns.last().map_or(0, |last| last.end);
-    let mut matrix = vec![[0.0; 3]; answers.len() * size];
+    let mut matrix = vec![Rgb::BLACK; answers.len() * size];
     for rows in 0..system.coupling.groups() {
         let weights: Vec<[f64; 3 * ANSWERS]> =
             system.coupling.receivers_of(rows).map(|i| weights(system, answers, i)).collect();
@@ -155,7 +154,7 @@ fn received_by(
             let products = products(of_member, &sent[from], group.senders_of(from).start);
             for (row, products) in matrix.chunks_mut(size).zip(products) {
                 let entries = row[unknowns[from].clone()].iter_mut();
-                entries.zip(products).for_each(|(entry, product)| *entry = added(*entry, product));
+                entries.zip(products).for_each(|(entry, product)| *entry += product);
             }
         }
     }
@@ -168,11 +167,11 @@ fn products(
     sent: &[[Rgb; ANSWERS]],
     first: usize,
 ) -> [[Rgb; ANSWERS]; ANSWERS] {
-    let mut products = [[[0.0; 3]; ANSWERS]; ANSWERS];
+    let mut products = [[Rgb::BLACK; ANSWERS]; ANSWERS];
     for (sender, sums) in scattered {
         for (row, &sum) in products.iter_mut().zip(sums.as_chunks::<3>().0) {
             let entries = row.iter_mut().zip(&sent[sender - first]);
-            entries.for_each(|(entry, &sent)| *entry = added(*entry, scaled(sum, sent)));
+            entries.for_each(|(entry, &sent)| *entry += Rgb(sum) * sent);
         }
     }
     products
@@ -183,6 +182,6 @@ fn weights(system: &InstanceSystem, answers: &[Vec<Rgb>], i: usize) -> [f64; 3 *
     let mut weights = [0.0; 3 * ANSWERS];
     let reflected = system.optics.reflectance[i].map(|rho| rho * system.clusters.area_of(i));
     let places = weights.as_chunks_mut::<3>().0.iter_mut();
-    places.zip(answers).for_each(|(place, answer)| *place = scaled(reflected, answer[i]));
+    places.zip(answers).for_each(|(place, answer)| *place = (reflected * answer[i]).0);
     weights
 }

@@ -4,7 +4,6 @@
 //! closed scene should be 1 and is so only on average. Whatever does not arrive counts as escaped.
 
 use crate::exchange::groups::Group;
-use equilux_bake::equilibrium::added;
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -90,9 +89,9 @@ fn shares(group: &Group, member: usize, arriving: &[f64]) -> Vec<f64> {
 
 impl std::ops::AddAssign for Energy {
     fn add_assign(&mut self, other: Self) {
-        self.emitted = added(self.emitted, other.emitted);
-        self.absorbed = added(self.absorbed, other.absorbed);
-        self.escaped = added(self.escaped, other.escaped);
-        self.travelling = added(self.travelling, other.travelling);
+        self.emitted = self.emitted + other.emitted;
+        self.absorbed = self.absorbed + other.absorbed;
+        self.escaped = self.escaped + other.escaped;
+        self.travelling = self.travelling + other.travelling;
     }
 }

@@ -16,7 +16,7 @@ use crate::exchange::step_times::Overhead;
 use crate::exchange::step_times::StepTimes;
 use crate::exchange::step_times::timed;
 use equilux_bake::equilibrium::krylov::Space;
-use equilux_bake::equilibrium::{added, largest, subtract};
+use equilux_bake::equilibrium::largest;
 use equilux_bake::monitor::Monitor;
 use equilux_formats::Rgb;
 use std::time::{Duration, Instant};
@@ -169,7 +169,7 @@ impl<'a> GroupSolver<'a> {
     }
 
     fn begin(&self, start: Option<Vec<Rgb>>) -> State {
-        let dark = || vec![[0.0; 3]; self.group.elements()];
+        let dark = || vec![Rgb::BLACK; self.group.elements()];
         let irradiance = start.as_ref().map_or_else(dark, |start| self.group.irradiance(start));
         let radiosity = start.unwrap_or_else(dark);
         let missing = self.group.residual(&radiosity, &irradiance);
@@ -182,7 +182,7 @@ impl<'a> GroupSolver<'a> {
         let Some((base, space)) = &mut state.krylov else {
             let (z, az) = self.sweep.correct(&state.missing, None, times);
             state.radiosity = sum(&state.radiosity, &z);
-            state.missing = state.missing.iter().zip(az).map(|(&r, az)| subtract(r, az)).collect();
+            state.missing = state.missing.iter().zip(az).map(|(&r, az)| r - az).collect();
             return;
         };
         let coarse = || self.coarse.as_ref().and_then(|coarse| coarse.correct(space.newest()));
@@ -242,12 +242,12 @@ fn look_back(rounds: &mut [GroupRound], estimate: ErrorEstimate, light: &[Rgb]) 
         let moved = earlier
             .iter()
             .zip(light)
-            .fold([0.0; 3], |most: Rgb, (&a, &b)| std::array::from_fn(|c| most[c].max((a[c] - b[c]).abs())));
+            .fold(Rgb::BLACK, |most: Rgb, (&a, &b)| Rgb::from_fn(|c| most[c].max((a[c] - b[c]).abs())));
         let bound = &mut round.estimate.error_bound;
-        *bound = std::array::from_fn(|c| bound[c].min(moved[c] + proved[c]));
+        *bound = Rgb::from_fn(|c| bound[c].min(moved[c] + proved[c]));
     }
 }
 
 fn sum(a: &[Rgb], b: &[Rgb]) -> Vec<Rgb> {
-    a.iter().zip(b).map(|(&a, &b)| added(a, b)).collect()
+    a.iter().zip(b).map(|(&a, &b)| a + b).collect()
 }

@@ -3,7 +3,6 @@
 
 use crate::exchange::active_rows::ActiveRows;
 use crate::exchange::system::InstanceSystem;
-use equilux_bake::equilibrium::{added, scaled, subtract};
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -130,12 +129,12 @@ impl<'a> Group<'a> {
     }
 
     fn irradiance_of(&self, active: &[ActiveRows], radiosity: &[Rgb]) -> Vec<Rgb> {
-        let mut all = vec![[0.0; 3]; self.scene_senders];
+        let mut all = vec![Rgb::BLACK; self.scene_senders];
         (0..self.members.len()).for_each(|m| self.send(m, &radiosity[self.elements_of(m)], &mut all));
         let of = |m: usize| -> Vec<Rgb> {
             let own = active[m].own_irradiance(self.system(m), &all[self.senders_of(m)]);
             let others = active[m].coupled_irradiance(self.system(m), &all);
-            own.iter().zip(others).map(|(&own, other)| added(own, other)).collect()
+            own.iter().zip(others).map(|(&own, other)| own + other).collect()
         };
         (0..self.members.len()).flat_map(of).collect()
     }
@@ -143,14 +142,14 @@ impl<'a> Group<'a> {
     /// r = E + ρH − B with the irradiance H of that B, W/m².
     pub fn residual(&self, radiosity: &[Rgb], irradiance: &[Rgb]) -> Vec<Rgb> {
         let emission = self.systems().flat_map(|system| &system.optics.emission);
-        emission.zip(self.image(radiosity, irradiance)).map(|(&e, image)| subtract(e, image)).collect()
+        emission.zip(self.image(radiosity, irradiance)).map(|(&e, image)| e - image).collect()
     }
 
     /// B − ρH with the irradiance H of that B, W/m².
     pub fn image(&self, radiosity: &[Rgb], irradiance: &[Rgb]) -> Vec<Rgb> {
         let reflectance = self.systems().flat_map(|system| &system.optics.reflectance);
         let rows = reflectance.zip(radiosity.iter().zip(irradiance));
-        rows.map(|(&rho, (&b, &h))| subtract(b, scaled(rho, h))).collect()
+        rows.map(|(&rho, (&b, &h))| b - rho * h).collect()
     }
 
     /// The members' shares of the equation.

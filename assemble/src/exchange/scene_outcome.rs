@@ -87,7 +87,7 @@ impl SceneOutcome {
 
     /// One vector of the scene from one of each group.
     fn joined<'a>(&'a self, of: impl Fn(&'a GroupOutcome) -> &'a Vec<Rgb>) -> Vec<Rgb> {
-        let mut all = vec![[0.0; 3]; self.places.last().map_or(0, |last| last.end)];
+        let mut all = vec![Rgb::BLACK; self.places.last().map_or(0, |last| last.end)];
         for (members, outcome) in &self.solved {
             let mut rest = of(outcome).as_slice();
             for &member in members {

@@ -1,6 +1,6 @@
 //! One instance's block row of the radiosity equation B = E + ρFB, and its residual.
 
-use equilux_bake::equilibrium::{LocalSystem, added, scaled, subtract};
+use equilux_bake::equilibrium::LocalSystem;
 use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
 
 /// One instance's share of the equation.
@@ -30,8 +30,8 @@ pub fn residual(
     let of = |system: &InstanceSystem, b: &[Rgb], h: &[Rgb]| -> Vec<Rgb> {
         (0..b.len())
             .map(|i| {
-                let right = added(system.optics.emission[i], scaled(system.optics.reflectance[i], h[i]));
-                subtract(right, b[i])
+                let right = system.optics.emission[i] + system.optics.reflectance[i] * h[i];
+                right - b[i]
             })
             .collect()
     };

@@ -4,7 +4,6 @@
 use crate::gather::Gather;
 use crate::gather::piece::{Piece, cells, centre};
 use crate::gather::receiver::receiver;
-use equilux_bake::equilibrium::added;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
@@ -25,7 +24,7 @@ impl Gather {
         let mut found = self.glow_over(pieces, unit);
         for lamp in self.lamps() {
             let arriving = lamp.irradiance(self.world(), pieces);
-            found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum = added(*sum, h));
+            found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum += h);
         }
         found
     }
@@ -99,9 +98,9 @@ fn averages(
             weights.push((place, if whole > 0.0 { area / whole } else { 1.0 / cells.len() as f64 }));
         }
     }
-    let mut sums = vec![[0.0; 3]; which.len()];
+    let mut sums = vec![Rgb::BLACK; which.len()];
     for ((place, weight), light) in weights.into_iter().zip(light(&points)) {
-        sums[place] = added(sums[place], light.map(|h| h * weight));
+        sums[place] += light * weight;
     }
     sums
 }

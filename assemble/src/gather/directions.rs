@@ -8,13 +8,6 @@ use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
-/// Luminance of linear RGB with BT.709 primaries (ITU-R BT.709, item 3.2).
-const LUMINANCE: Rgb = [0.2126, 0.7152, 0.0722];
-
-fn luminance(light: Rgb) -> f64 {
-    (0..3).map(|c| LUMINANCE[c] * light[c]).sum()
-}
-
 impl Gather {
     /// Σ_j Y_j ω_j / Σ_j Y_j at the middle of each piece, with the luminance Y_j of F_ij B_j and the direction ω_j to the
     /// middle of sender j; zero where there is no light.
@@ -33,7 +26,7 @@ impl Gather {
                 pieces.iter().zip(&mut sums).zip(lamp.irradiance(self.world(), pieces))
             {
                 let to = lamp.position - centre(piece.corners, piece.normal).0;
-                add(sum, luminance(light), to);
+                add(sum, light.luminance(), to);
             }
         }
         sums.into_iter().map(|(sum, total)| if total > 0.0 { sum / total } else { DVec3::ZERO }).collect()
@@ -55,7 +48,7 @@ impl Gather {
             for (node, form_factor) in rows.row(number) {
                 let sender = &self.world.nodes[node];
                 let to = sender.bounds.centre() - point.centroid;
-                add(sum, form_factor * luminance(sent[node]), to);
+                add(sum, form_factor * sent[node].luminance(), to);
             }
         }
     }

@@ -24,7 +24,7 @@ pub fn surfaces(placed: &Placed, emission: &[Rgb]) -> Surfaces {
         let mut open: Vec<usize> = clusters.root().into_iter().collect();
         while let Some(node) = open.pop() {
             match uniform(clusters, own, node) {
-                Some([0.0, 0.0, 0.0]) => {}
+                Some(Rgb::BLACK) => {}
                 Some(sends) if let Some(polygon) = polygon(placed, k, node) => found.push((polygon, sends)),
                 _ => {
                     let children =

@@ -52,7 +52,7 @@ impl Lamp {
         // The solid angle of a ball around the scene.
         let distance = (position - centre).length();
         let angle = if distance <= size { 4.0 * PI } else { PI * (size / distance).powi(2) };
-        Self { name: light.name.clone(), power: intensity.map(|i| i * angle), position, intensity, cone }
+        Self { name: light.name.clone(), power: intensity * angle, position, intensity, cone }
     }
 
     /// The average irradiance of pieces, W/m².
@@ -65,7 +65,7 @@ impl Lamp {
         let to = point.centroid - self.position;
         let cosine = -point.normal.dot(to) / to.length();
         if cosine.is_nan() || cosine <= 0.0 {
-            return [0.0; 3];
+            return Rgb::BLACK;
         }
         let plane = Plane { normal: point.normal, point: point.centroid };
         let mut hidden = false;
@@ -74,11 +74,11 @@ impl Lamp {
         });
         let sent = self.cone.as_ref().map_or(1.0, |cone| cone.falloff(to));
         let share = if hidden { 0.0 } else { sent * cosine / to.length_squared() };
-        self.intensity.map(|i| i * share)
+        self.intensity * share
     }
 
     fn over(&self, world: &World, piece: &Piece) -> Rgb {
-        let dark = [0.0; 3];
+        let dark = Rgb::BLACK;
         if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 {
             return dark;
         }

@@ -23,7 +23,7 @@ pub mod receiver;
 pub mod sky;
 
 use crate::placed::Placed;
-use equilux_bake::equilibrium::{added, apply, subtract};
+use equilux_bake::equilibrium::apply;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
@@ -68,14 +68,14 @@ impl Gather {
         let mut world = placed.stage();
         let scene: Vec<usize> = (0..world.instances()).collect();
         let faces = Faces::of(&world);
-        let reflected: Vec<Rgb> = radiosity.iter().zip(emission).map(|(&b, &e)| subtract(b, e)).collect();
+        let reflected: Vec<Rgb> = radiosity.iter().zip(emission).map(|(&b, &e)| b - e).collect();
         let mut reflected: Vec<Rgb> = placed
             .split(&reflected)
             .iter()
             .enumerate()
             .flat_map(|(k, own)| placed.part_of(k).part.geometry.clusters.means(own))
             .collect();
-        let mut shining = vec![[0.0; 3]; reflected.len()];
+        let mut shining = vec![Rgb::BLACK; reflected.len()];
         let mut glowing = Vec::new();
         let surfaces = glowing::surfaces(placed, emission);
         if !surfaces.elements.is_empty() {
@@ -90,7 +90,7 @@ impl Gather {
             shining.extend(dome.clusters.means(sends));
             world.add_far(dome)
         });
-        reflected.resize(world.nodes.len(), [0.0; 3]);
+        reflected.resize(world.nodes.len(), Rgb::BLACK);
         let lamps = lights.lamps.clone();
         Self { world, faces, scene, reflected, glowing, sky, shining, lamps, resolution }
     }
@@ -119,16 +119,16 @@ impl Gather {
     pub fn reflected(&self, points: &[Element]) -> Vec<Rgb> {
         let reflected = self.from(points, &self.scene, &self.reflected, self.resolution);
         let sky = self.from(points, self.sky.as_slice(), &self.shining, EXACT);
-        reflected.into_iter().zip(sky).map(|(a, b)| added(a, b)).collect()
+        reflected.into_iter().zip(sky).map(|(a, b)| a + b).collect()
     }
 
     /// Irradiance at points from everything, W/m².
     pub fn irradiance(&self, points: &[Element]) -> Vec<Rgb> {
         let mut found = self.glow(points);
-        found.iter_mut().zip(self.reflected(points)).for_each(|(sum, h)| *sum = added(*sum, h));
+        found.iter_mut().zip(self.reflected(points)).for_each(|(sum, h)| *sum += h);
         for lamp in &self.lamps {
             let arriving = points.iter().map(|point| lamp.at(&self.world, point));
-            found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum = added(*sum, h));
+            found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum += h);
         }
         found
     }
@@ -143,7 +143,7 @@ impl Gather {
 
     fn from(&self, points: &[Element], senders: &[usize], sent: &[Rgb], resolution: Resolution) -> Vec<Rgb> {
         if senders.is_empty() {
-            return vec![[0.0; 3]; points.len()];
+            return vec![Rgb::BLACK; points.len()];
         }
         apply(&self.rows(points, senders, resolution), sent)
     }

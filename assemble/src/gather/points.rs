@@ -62,7 +62,7 @@ pub fn read(file: &Path, origin: DVec3) -> Result<Vec<Place>> {
 pub fn read_light(file: &Path, origin: DVec3) -> Result<(Vec<Place>, Vec<Rgb>)> {
     let table = Table::read(file, EXPECTED)?;
     let names = if table.has("Hc_r") { ["Hc_r", "Hc_g", "Hc_b"] } else { ["H_r", "H_g", "H_b"] };
-    Ok((places(&table, origin)?, table.vectors(names)?))
+    Ok((places(&table, origin)?, table.colours(names)?))
 }
 
 /// The places of a table that is read. Fails as [`read`] does.
@@ -154,7 +154,7 @@ fn table(
         let at = joined(&[(place.point + origin).to_array(), place.normal.to_array()].concat());
         match light {
             Some(PointLight { element, irradiance: h }) => {
-                writeln!(out, "{at},{},{element},{}", joined(h), joined(&irradiance[*element]))?;
+                writeln!(out, "{at},{},{element},{}", joined(&h[..]), joined(&irradiance[*element][..]))?;
             }
             None => writeln!(out, "{at},,,,,,,")?,
         }

@@ -119,7 +119,7 @@ impl Picture {
     fn average(&self, cell: &Element, centre: DVec3) -> Rgb {
         let points = (self.width / (4 * SKY_CELLS)).clamp(4, 64);
         let &[a, b, c, d] = cell.corners.as_slice() else { unreachable!("cells have four corners") };
-        let (mut sum, mut total) = ([0.0; 3], 0.0);
+        let (mut sum, mut total) = (Rgb::BLACK, 0.0);
         for k in 0..points * points {
             let [s, t] = [k % points, k / points].map(|n| (n as f64 + 0.5) / points as f64);
             let p = a * (1.0 - s) * (1.0 - t) + b * s * (1.0 - t) + c * s * t + d * (1.0 - s) * t - centre;
@@ -129,7 +129,7 @@ impl Picture {
             (0..3).for_each(|channel| sum[channel] += weight * f64::from(radiance[channel]));
             total += weight;
         }
-        sum.map(|sum| sum / total)
+        sum / total
     }
 
     fn at(&self, to: DVec3) -> [f32; 3] {

@@ -22,10 +22,10 @@ fn neighbours(index: usize, width: usize, count: usize) -> impl Iterator<Item = 
 }
 
 fn mean(values: impl Iterator<Item = Rgb>) -> Option<Rgb> {
-    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    let (mut sum, mut count) = (Rgb::BLACK, 0.0);
     for value in values {
         sum.iter_mut().zip(value).for_each(|(sum, v)| *sum += v);
         count += 1.0;
     }
-    (count > 0.0).then(|| sum.map(|sum| sum / count))
+    (count > 0.0).then(|| sum / count)
 }

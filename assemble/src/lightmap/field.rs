@@ -6,7 +6,6 @@
 
 use super::texels::{Texel, Texels};
 use crate::gather::Gather;
-use equilux_bake::equilibrium::added;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::Rgb;
 use std::collections::HashMap;
@@ -154,7 +153,7 @@ impl Square {
 
 fn bilinear(corners: [Rgb; 4], [s, t]: [f64; 2]) -> Rgb {
     let weights = [(1.0 - s) * (1.0 - t), s * (1.0 - t), (1.0 - s) * t, s * t];
-    corners.iter().zip(weights).fold([0.0; 3], |sum, (corner, weight)| added(sum, corner.map(|h| h * weight)))
+    corners.iter().zip(weights).fold(Rgb::BLACK, |sum, (corner, weight)| sum + *corner * weight)
 }
 
 /// The bits of both coordinates in turn (Morton 1966): what is near in it is near.

@@ -82,7 +82,7 @@ fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(us
 
 /// The EXR file of an image: irradiance times `factor`, as half floats, compressed without loss.
 pub fn exr(lightmap: &Lightmap, number: usize, factor: f64) -> io::Result<Vec<u8>> {
-    half_floats(lightmap, number, |tile, texel| lightmap.irradiance[tile][texel].map(|h| h * factor))
+    half_floats(lightmap, number, |tile, texel| (lightmap.irradiance[tile][texel] * factor).0)
 }
 
 /// The EXR file of an image's directions, x, y and z as red, green and blue.
@@ -151,7 +151,7 @@ pub fn relative_png(lightmap: &Lightmap, number: usize, peaks: &Peaks) -> io::Re
 
 /// The PNG file of an image of linear RGB, 0..1, in sRGB.
 fn encode(lightmap: &Lightmap, number: usize, colour: impl Fn(usize, usize) -> Rgb) -> io::Result<Vec<u8>> {
-    let texels = image(lightmap, number, [0; 3], |tile, texel| colour(tile, texel).map(srgb));
+    let texels = image(lightmap, number, [0; 3], |tile, texel| colour(tile, texel).0.map(srgb));
     let [width, height] = lightmap.atlas.images[number];
     let picture = RgbImage::from_raw(width, height, texels.into_flattened()).expect("one colour a texel");
     let mut file = Vec::new();

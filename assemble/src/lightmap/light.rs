@@ -6,7 +6,6 @@ use super::field::interpolated;
 use super::texels::{Piece, Texel, Texels};
 use crate::gather::faces::Plane;
 use crate::gather::{Gather, piece};
-use equilux_bake::equilibrium::added;
 use equilux_formats::Rgb;
 use glam::DVec3;
 
@@ -34,7 +33,7 @@ impl<'a> TexelLight<'a> {
         let planes = self.planes(texels);
         let direct = self.direct(texels, &planes);
         let reflected = self.reflected(texels, &planes);
-        direct.into_iter().zip(reflected).map(|(a, b)| added(a, b)).collect()
+        direct.into_iter().zip(reflected).map(|(a, b)| a + b).collect()
     }
 
     /// The faces in the plane of each patch, which is where a piece of it lies: the corner of its grid may be far away.
@@ -67,19 +66,21 @@ impl<'a> TexelLight<'a> {
     pub fn directions(&self, texels: &Texels) -> Vec<[f64; 3]> {
         let planes = self.planes(texels);
         let gathered = |texels: &[&Texel]| self.mean_directions(texels, &planes);
-        interpolated(self.gather, texels, gathered, |_, told, found| {
+        // Directions are interpolated as light is, component by component.
+        let found = interpolated(self.gather, texels, gathered, |_, told, found| {
             (0..3).all(|c| (told[c] - found[c]).abs() <= TURNED)
-        })
+        });
+        found.into_iter().map(|Rgb(direction)| direction).collect()
     }
 
-    fn mean_directions(&self, texels: &[&Texel], planes: &[Plane]) -> Vec<[f64; 3]> {
+    fn mean_directions(&self, texels: &[&Texel], planes: &[Plane]) -> Vec<Rgb> {
         let largest = |texel: &&Texel| {
             let by_area = |a: &&Piece, b: &&Piece| a.area.total_cmp(&b.area);
             texel.pieces.iter().max_by(by_area).expect("a texel holds some of its chart").clone()
         };
         let pieces: Vec<Piece> = texels.iter().map(largest).collect();
         let pieces: Vec<piece::Piece> = pieces.iter().map(|piece| averaged(piece, planes)).collect();
-        self.gather.directions(&pieces).into_iter().map(|direction| direction.to_array()).collect()
+        self.gather.directions(&pieces).into_iter().map(|direction| Rgb(direction.to_array())).collect()
     }
 
     fn is_near(&self, a: Rgb, b: Rgb) -> bool {
@@ -93,9 +94,9 @@ fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[piece::Piece]) ->
         texels.iter().flat_map(|texel| &texel.pieces).map(|piece| averaged(piece, planes)).collect();
     let mut light = light(&pieces).into_iter();
     let mean = |texel: &&Texel| {
-        let sum = texel.pieces.iter().fold([0.0; 3], |sum, piece| {
+        let sum = texel.pieces.iter().fold(Rgb::BLACK, |sum, piece| {
             let h = light.next().expect("a value a piece");
-            added(sum, h.map(|h| h * piece.area))
+            sum + h * piece.area
         });
         sum.map(|sum| sum / texel.area())
     };

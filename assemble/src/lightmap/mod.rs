@@ -127,11 +127,13 @@ impl<'a> Lightmap<'a> {
             self.scene,
             self.atlas,
             &self.tiles,
-            directions,
+            |texels: &Texels| directions(texels).into_iter().map(Rgb).collect(),
             ("directions of the lightmap", ROWS_PER_TEXEL),
             monitor,
         )?;
-        self.directions = Some(with_margins(values, &self.tiles).0);
+        let tiles = with_margins(values, &self.tiles).0;
+        let bare = |tile: Vec<Rgb>| tile.into_iter().map(|Rgb(direction)| direction).collect();
+        self.directions = Some(tiles.into_iter().map(bare).collect());
         Ok(self)
     }
 
@@ -150,9 +152,9 @@ impl<'a> Lightmap<'a> {
     pub fn radiosity(&self, tile: usize, texel: usize) -> Rgb {
         let Material { reflectance, emission, .. } = self.material_of(&self.tiles[tile]).1;
         let h = self.irradiance[tile][texel];
-        let tint = |of: usize| self.tints.as_ref().map_or([1.0; 3], |tints| tints[of][tile][texel]);
+        let tint = |of: usize| self.tints.as_ref().map_or(Rgb::WHITE, |tints| tints[of][tile][texel]);
         let [painted, shining] = [0, 1].map(tint);
-        std::array::from_fn(|c| emission[c] * shining[c] + reflectance[c] * painted[c] * h[c])
+        *emission * shining + *reflectance * painted * h
     }
 }
 

@@ -9,9 +9,8 @@ use super::Lightmap;
 use super::images::Peaks;
 use super::listing::rectangles;
 use crate::outputs::model::under_origin;
-use equilux_formats::{MaterialId, Rgb};
+use equilux_formats::{MaterialId, Rgb, glb};
 use glam::{DVec3, UVec2, Vec2, Vec3};
-use gltf::binary::{Glb, Header};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
@@ -45,18 +44,8 @@ pub fn model(lightmap: &Lightmap, images: &[Vec<u8>], look: &Look) -> io::Result
         }
     }
     let bin = document.add_images(images);
-    let glb = Glb {
-        header: Header { magic: *b"glTF", version: 2, length: 0 },
-        json: document
-            .json(lightmap.scene.origin, bin.len(), images.len(), look)
-            .to_string()
-            .into_bytes()
-            .into(),
-        bin: Some(bin.into()),
-    };
-    let mut file = Vec::new();
-    glb.to_writer(&mut file).map_err(io::Error::other)?;
-    Ok(file)
+    let json = document.json(lightmap.scene.origin, bin.len(), images.len(), look).to_string();
+    glb::file(json.as_bytes(), &bin)
 }
 
 fn matrix(placement: glam::DAffine3) -> [f64; 16] {
@@ -207,7 +196,7 @@ fn material(lightmap: &Lightmap, instance: usize, primitive: &Primitive, look: &
     }
 }
 
-fn opaque([r, g, b]: Rgb) -> [f64; 4] {
+fn opaque(Rgb([r, g, b]): Rgb) -> [f64; 4] {
     [r, g, b, 1.0]
 }
 

@@ -41,7 +41,7 @@ pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values
     for (i, &(tile, texel)) in places.iter().enumerate() {
         let value = &mut values[tile][texel];
         // A fit may swing below zero next to a shadow; light does not.
-        *value = [0, 1, 2].map(|channel: usize| (value[channel] + corrections[channel][i]).max(0.0));
+        *value = Rgb::from_fn(|channel| (value[channel] + corrections[channel][i]).max(0.0));
     }
 }
 

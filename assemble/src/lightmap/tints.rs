@@ -41,10 +41,10 @@ fn colour((reflectance, emission): (Rgb, Rgb), of: Of) -> Rgb {
 
 /// The mean over a texel's pieces; `back` takes them into the coordinates of their part.
 fn tint(texel: &Texel, back: DAffine3, colour: impl Fn(&[DVec3], DVec3) -> Rgb) -> Rgb {
-    let sum = texel.pieces.iter().fold([0.0; 3], |sum: Rgb, piece| {
+    let sum = texel.pieces.iter().fold(Rgb::BLACK, |sum: Rgb, piece| {
         let corners: Vec<DVec3> = piece.corners.iter().map(|&p| back.transform_point3(p)).collect();
         let colour = colour(&corners, back.transform_vector3(piece.normal).normalize());
-        std::array::from_fn(|c| sum[c] + colour[c] * piece.area)
+        sum + colour * piece.area
     });
     sum.map(|sum| sum / texel.area())
 }

@@ -187,7 +187,7 @@ impl Observer for Board {
         self.tell(|state| {
             (state.row_sums, state.computed) = (Arc::new(row_sums), Arc::new(computed));
             (state.status.seconds, state.status.phase) = (seconds, Phase::Exchange);
-            let radiosity = Arc::new(vec![[0.0; 3]; optics.emission.len()]);
+            let radiosity = Arc::new(vec![Rgb::BLACK; optics.emission.len()]);
             let model = state.model.clone();
             state.light = model.map(|model| Light { model, round: 0, radiosity, irradiance: None, optics });
             (state.began, state.published) = (Some(Instant::now()), None);

@@ -84,7 +84,7 @@ impl Light {
             (Field::Irradiance, Some(h)) => (exposure(h), 3, numbers(h)),
             (Field::Irradiance, None) => {
                 let arriving = self.arriving();
-                let known = arriving.iter().map(|h| h.map(|h| h.unwrap_or(0.0))).collect::<Vec<_>>();
+                let known = arriving.iter().map(|h| Rgb(h.map(|h| h.unwrap_or(0.0)))).collect::<Vec<_>>();
                 let numbers = arriving.iter().flatten().map(|h| h.map_or(UNKNOWN, |h| h as f32));
                 (exposure(&known), 3, numbers.collect())
             }

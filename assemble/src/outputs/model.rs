@@ -5,11 +5,9 @@
 use crate::output_file;
 use crate::outputs::scene_light::SceneLight;
 use crate::picture::exposure::Exposure;
-use equilux_formats::{Element, Result, Rgb};
+use equilux_formats::{Element, Result, Rgb, glb};
 use glam::{DVec3, Vec3};
-use gltf::binary::{Glb, Header};
 use serde_json::{Value, json};
-use std::io;
 use std::path::Path;
 
 /// A vertex: POSITION and COLOR_0, three f32 each.
@@ -20,15 +18,7 @@ const ARRAY_BUFFER: u32 = 34962;
 /// Writes the lit scene, at least one element, to `path`. Fails when it cannot be written there.
 pub fn write(path: &Path, light: &SceneLight, exposure: Exposure) -> Result<()> {
     let (document, vertices) = model(light, exposure);
-    output_file::write(path, |out| {
-        let glb = Glb {
-            // The lengths are set as it is written.
-            header: Header { magic: *b"glTF", version: 2, length: 0 },
-            json: document.to_string().into_bytes().into(),
-            bin: Some(vertices.into()),
-        };
-        glb.to_writer(out).map_err(io::Error::other)
-    })
+    output_file::write(path, |out| glb::write(out, document.to_string().as_bytes(), &vertices))
 }
 
 /// The JSON and the binary chunk.
@@ -108,7 +98,7 @@ impl Piece {
         let origin = corners.copied().fold(DVec3::INFINITY, DVec3::min).as_vec3();
         let mut vertices = Vec::with_capacity(6 * elements.len());
         for (element, &b) in elements.iter().zip(radiosity) {
-            let colour = DVec3::from(exposure.shown(b)).as_vec3();
+            let colour = DVec3::from(exposure.shown(b).0).as_vec3();
             vertices.extend(triangles(element).map(|p| [(p - origin.as_dvec3()).as_vec3(), colour]));
         }
         Self { origin, vertices }

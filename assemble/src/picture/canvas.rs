@@ -44,12 +44,12 @@ impl Canvas {
     pub fn paint(&self, background: Rgb, colour: impl Fn(DVec2, usize) -> Rgb + Sync) -> RgbImage {
         let width = self.view.width as usize;
         let pixel = |(i, samples): (usize, &[Option<u32>; SAMPLES.len()])| {
-            let mut sum = [0.0; 3];
+            let mut sum = Rgb::BLACK;
             for (element, sample) in samples.iter().zip(SAMPLES) {
                 let light = element.map_or(background, |e| colour(corner(i, width) + sample, e as usize));
-                (0..3).for_each(|channel| sum[channel] += light[channel]);
+                sum += light;
             }
-            sum.map(|light| srgb(light / SAMPLES.len() as f64))
+            (sum / SAMPLES.len() as f64).0.map(srgb)
         };
         let bytes: Vec<[u8; 3]> = self.pixels.par_iter().enumerate().map(pixel).collect();
         RgbImage::from_raw(self.view.width, self.view.height, bytes.into_flattened())

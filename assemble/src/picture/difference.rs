@@ -5,7 +5,6 @@ use super::interpolation::Interpolated;
 use crate::gather::points::{Place, located, read_light};
 use crate::picture::BACKGROUND;
 use crate::picture::canvas::Canvas;
-use crate::picture::exposure::luminance;
 use equilux_formats::{Element, Result, Rgb};
 use glam::DVec3;
 use image::RgbImage;
@@ -14,9 +13,9 @@ use rstar::primitives::GeomWithData;
 use std::path::Path;
 
 /// The colours of ours darker, alike and brighter, linear RGB; far enough from each other for those who do not see red and green.
-const DARKER: Rgb = [0.02, 0.13, 0.52];
-const ALIKE: Rgb = [0.9, 0.9, 0.9];
-const BRIGHTER: Rgb = [0.64, 0.05, 0.01];
+const DARKER: Rgb = Rgb([0.02, 0.13, 0.52]);
+const ALIKE: Rgb = Rgb::splat(0.9);
+const BRIGHTER: Rgb = Rgb([0.64, 0.05, 0.01]);
 
 /// The colours are full where this share of the places is further off.
 const FULL: f64 = 0.05;
@@ -53,12 +52,12 @@ impl<'a> Difference<'a> {
     /// Compare the light of elements.
     pub fn new(reference: &Reference, elements: &'a [Element], light: &Interpolated) -> Self {
         let size = reference.places.iter().map(|p| p.point.abs().max_element()).fold(0.0, f64::max);
-        let theirs: Vec<f64> = reference.irradiance.iter().copied().map(luminance).collect();
+        let theirs: Vec<f64> = reference.irradiance.iter().map(|h| h.luminance()).collect();
         let mean = theirs.iter().sum::<f64>() / theirs.len() as f64;
         let ours = located(elements, &reference.places);
         let off = |((place, theirs), ours): ((&Place, f64), Option<(Element, usize)>)| {
             let (at, element) = ours?;
-            let ours = luminance(light.at(element, at.centroid));
+            let ours = light.at(element, at.centroid).luminance();
             Some(GeomWithData::new(key(place, size), (ours - theirs) / mean))
         };
         let off: Vec<_> = reference.places.iter().zip(theirs).zip(ours).filter_map(off).collect();
@@ -80,7 +79,7 @@ impl<'a> Difference<'a> {
             let off = self.at(element, canvas.view().onto(point, &self.elements[element])) / self.full;
             let end = if off < 0.0 { DARKER } else { BRIGHTER };
             let share = off.abs().min(1.0);
-            [0, 1, 2].map(|c| ALIKE[c] + share * (end[c] - ALIKE[c]))
+            ALIKE + (end - ALIKE) * share
         })
     }
 

@@ -27,8 +27,8 @@ impl Exposure {
         emission: &[Rgb],
     ) -> Self {
         let lit = |lamps: bool| {
-            let counts = shown().filter(|&e| lamps || emission[e] == [0.0; 3]);
-            bright(counts.map(|e| luminance(radiosity[e]) / PI).filter(|light| light.is_normal()).collect())
+            let counts = shown().filter(|&e| lamps || emission[e] == Rgb::BLACK);
+            bright(counts.map(|e| radiosity[e].luminance() / PI).filter(|light| light.is_normal()).collect())
         };
         Self(lit(false).or_else(|| lit(true)).map_or(1.0, |light| KNEE / light))
     }
@@ -43,11 +43,6 @@ impl Exposure {
 fn bright(mut lights: Vec<f64>) -> Option<f64> {
     let rank = (lights.len().checked_sub(1)? as f64 * BELOW_KNEE) as usize;
     Some(*lights.select_nth_unstable_by(rank, f64::total_cmp).1)
-}
-
-/// Luminance of linear RGB, ITU-R BT.709.
-pub fn luminance([r, g, b]: Rgb) -> f64 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 fn tone(x: f64) -> f64 {

@@ -17,7 +17,7 @@ impl Interpolated<'_> {
     /// The irradiance at a point of an element, W/m².
     pub fn at(&self, element: usize, point: DVec3) -> Rgb {
         let Some(corners) = self.corners else { return self.flat[element] };
-        let mut sum = [0.0; 3];
+        let mut sum = Rgb::BLACK;
         for (weight, value) in weights(&self.elements[element], point).into_iter().zip(corners[element]) {
             (0..3).for_each(|c| sum[c] += weight * value[c]);
         }
@@ -41,7 +41,7 @@ fn weights(element: &Element, point: DVec3) -> [f64; 4] {
         *weight = (tangent(i + count - 1) + tangent(i)).max(0.0) / to(i).length();
     }
     let sum: f64 = weights.iter().sum();
-    if sum.is_finite() && sum > 0.0 { weights.map(|w| w / sum) } else { nearest(corners, point) }
+    if sum.is_finite() && sum > 0.0 { weights.map(|weight| weight / sum) } else { nearest(corners, point) }
 }
 
 /// All weight to the nearest corner: for points on corners and edges, where the formula divides by zero.

@@ -20,11 +20,11 @@ use std::io;
 use std::path::Path;
 
 /// Behind everything, linear RGB: a dark grey that neither lit nor unlit surfaces have by chance.
-pub const BACKGROUND: Rgb = [0.02; 3];
+pub const BACKGROUND: Rgb = Rgb::splat(0.02);
 /// Wireframe: paper, surfaces and lines, linear RGB.
-const PAPER: Rgb = [1.0; 3];
-const SURFACE: Rgb = [0.85; 3];
-const LINE: Rgb = [0.01; 3];
+const PAPER: Rgb = Rgb::WHITE;
+const SURFACE: Rgb = Rgb::splat(0.85);
+const LINE: Rgb = Rgb::splat(0.01);
 /// Between pictures that stand side by side, pixels.
 const GAP: u32 = 6;
 /// Half the width of a line between two elements, pixels.

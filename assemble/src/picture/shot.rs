@@ -106,7 +106,7 @@ pub fn draw(
         Shading::Smooth => canvas.paint(BACKGROUND, |point, element| {
             let h = light.at(element, canvas.view().onto(point, &elements[element]));
             let (e, rho) = (emission[element], equation.optics.reflectance[element]);
-            exposure.shown([0, 1, 2].map(|c| e[c] + rho[c] * h[c]))
+            exposure.shown(e + rho * h)
         }),
     };
     let path = folder.join("render.png");

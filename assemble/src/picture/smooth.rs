@@ -70,12 +70,12 @@ fn lifted(element: &Element) -> DVec3 {
 
 /// The mean of some values, if there are any.
 fn mean(values: impl Iterator<Item = Rgb>) -> Option<Rgb> {
-    let (mut sum, mut count) = ([0.0; 3], 0.0);
+    let (mut sum, mut count) = (Rgb::BLACK, 0.0);
     for value in values {
         (0..3).for_each(|c| sum[c] += value[c]);
         count += 1.0;
     }
-    (count > 0.0).then(|| sum.map(|sum| sum / count))
+    (count > 0.0).then(|| sum / count)
 }
 
 #[cfg(test)]
@@ -96,7 +96,7 @@ mod tests {
     fn floor() -> (Vec<Element>, Vec<Rgb>) {
         let squares = (0..8).map(|k| (f64::from(k % 4), f64::from(k / 4)));
         let at = |(x, z)| square(DVec3::new(x, 0.0, z), DVec3::Z, DVec3::X);
-        (squares.clone().map(at).collect(), squares.map(|(x, _)| [x + 1.0; 3]).collect())
+        (squares.clone().map(at).collect(), squares.map(|(x, _)| Rgb::splat(x + 1.0)).collect())
     }
 
     /// The values of the corners at x = 2 of the squares on either side of it.
@@ -119,7 +119,7 @@ mod tests {
     fn light_does_not_leak_below_a_wall() {
         let (mut elements, mut irradiance) = floor();
         elements.push(square(DVec3::new(2.0, 0.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::Z));
-        irradiance.push([7.0; 3]);
+        irradiance.push(Rgb([7.0; 3]));
         assert_eq!(at_two(&elements, &irradiance), [vec![2.0, 2.0], vec![3.0, 3.0]]);
     }
 
@@ -128,8 +128,8 @@ mod tests {
         let (mut elements, mut irradiance) = floor();
         // The lid of a crate over the second square, seen from below by its back.
         elements.push(square(DVec3::new(1.1, 0.5, 0.1), 0.8 * DVec3::Z, 0.8 * DVec3::X));
-        irradiance.push([7.0; 3]);
-        irradiance[1] = [0.0; 3];
+        irradiance.push(Rgb([7.0; 3]));
+        irradiance[1] = Rgb::BLACK;
         let [below, beside] = at_two(&elements, &irradiance);
         // Where four squares meet three are lit, by 3, 2 and 3; where two meet one is. Corners go round each square.
         let (meeting, alone) = ((3.0 + 2.0 + 3.0) / 3.0, 3.0);

@@ -7,7 +7,7 @@
 //! cluster's largest w in place of each F w only grows, and then all of this holds the more.
 
 use crate::exchange::system::InstanceSystem;
-use equilux_bake::equilibrium::{added, apply, largest, scaled};
+use equilux_bake::equilibrium::{apply, largest};
 use equilux_bake::treecode::MISSED;
 use equilux_formats::{ClusterTree, Precision, Rgb, SINGLE_ROUNDING};
 use rayon::prelude::*;
@@ -46,31 +46,29 @@ impl<'a> Kept<'a> {
         };
         let spreads: Vec<Vec<Rgb>> = self.nodes.iter().zip(radiosity).map(spreads).collect();
         // What an entry is off by goes with the mean and with the spread; neither is above the cluster's brightest.
-        let twice: Vec<Vec<Rgb>> =
-            radiosity.iter().map(|b| b.iter().map(|b| b.map(|b| 2.0 * b)).collect()).collect();
+        let twice: Vec<Vec<Rgb>> = radiosity.iter().map(|b| b.iter().map(|&b| b * 2.0).collect()).collect();
         self.reflected(&spreads, &twice)
     }
 
     /// w with |A⁻¹ r| ≤ w for every r with |r| ≤ `sizes`, W/m², one vector an instance; infinite in a channel in which
     /// it cannot be shown that every element takes light out of the scene.
     pub fn enclose(&self, sizes: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
-        let ones: Vec<Vec<Rgb>> = sizes.iter().map(|s| vec![[1.0; 3]; s.len()]).collect();
+        let ones: Vec<Vec<Rgb>> = sizes.iter().map(|s| vec![Rgb::WHITE; s.len()]).collect();
         let theta = constant(sizes, &self.reflected_at_most(&ones));
-        let provable = theta.map(f64::is_finite);
-        let start = std::array::from_fn(|c| if provable[c] { theta[c] } else { 0.0 });
+        let provable = theta.0.map(f64::is_finite);
+        let start = Rgb::from_fn(|c| if provable[c] { theta[c] } else { 0.0 });
         let mut w: Vec<Vec<Rgb>> = sizes.iter().map(|s| vec![start; s.len()]).collect();
         let (share, most) = SWEEPS;
         for _ in 0..most {
             let before = total(&w);
             let reflected = self.reflected_at_most(&w);
             let rows = w.iter_mut().flatten().zip(sizes.iter().flatten()).zip(reflected.iter().flatten());
-            rows.for_each(|((w, &size), &more)| *w = smaller(*w, added(size, more)));
+            rows.for_each(|((w, &size), &more)| *w = smaller(*w, size + more));
             if total(&w) > (1.0 - share) * before {
                 break;
             }
         }
-        let unproved =
-            |w: &mut Rgb| *w = std::array::from_fn(|c| if provable[c] { w[c] } else { f64::INFINITY });
+        let unproved = |w: &mut Rgb| *w = Rgb::from_fn(|c| if provable[c] { w[c] } else { f64::INFINITY });
         w.iter_mut().flatten().for_each(unproved);
         w
     }
@@ -90,8 +88,8 @@ impl<'a> Kept<'a> {
         let of = |(k, node): (usize, &InstanceSystem)| -> Vec<Rgb> {
             let (own, others) = (apply(node.self_block, &values[k]), apply(node.coupling, &all));
             let row = |i: usize| {
-                let off = most.map(|most| OFF * most);
-                scaled(node.optics.reflectance[i], added(added(own[i], others[i]), off))
+                let off = most * OFF;
+                node.optics.reflectance[i] * (own[i] + others[i] + off)
             };
             (0..own.len()).map(row).collect()
         };
@@ -107,24 +105,23 @@ fn constant(sizes: &[Vec<Rgb>], seen: &[Vec<Rgb>]) -> Rgb {
         _ if seen < 1.0 => size / (1.0 - seen),
         _ => f64::INFINITY,
     };
-    pairs.fold([0.0; 3], |most: Rgb, (size, seen)| {
-        std::array::from_fn(|c| most[c].max(quotient(size[c], seen[c])))
-    })
+    pairs
+        .fold(Rgb::BLACK, |most: Rgb, (size, seen)| Rgb::from_fn(|c| most[c].max(quotient(size[c], seen[c]))))
 }
 
 /// The values of all nodes: an element's own, the largest in a cluster.
 fn maxima(clusters: &ClusterTree, elements: &[Rgb]) -> Vec<Rgb> {
     let mut values = elements.to_vec();
-    values.resize(clusters.nodes(), [0.0; 3]);
+    values.resize(clusters.nodes(), Rgb::BLACK);
     for (cluster, pair) in clusters.children().iter().enumerate().rev() {
         let [left, right] = pair.map(|child| values[child as usize]);
-        values[elements.len() + cluster] = std::array::from_fn(|c| left[c].max(right[c]));
+        values[elements.len() + cluster] = Rgb::from_fn(|c| left[c].max(right[c]));
     }
     values
 }
 
 fn smaller(a: Rgb, b: Rgb) -> Rgb {
-    std::array::from_fn(|c| a[c].min(b[c]))
+    Rgb::from_fn(|c| a[c].min(b[c]))
 }
 
 fn total(values: &[Vec<Rgb>]) -> f64 {

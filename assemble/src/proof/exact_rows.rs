@@ -4,7 +4,7 @@
 use super::sample::Chosen;
 use crate::exchange::system::InstanceSystem;
 use crate::placed::Placed;
-use equilux_bake::equilibrium::{added, apply, scaled, subtract};
+use equilux_bake::equilibrium::apply;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, block};
 use equilux_formats::{Result, Rgb, Rows};
@@ -48,8 +48,8 @@ pub fn residuals(
         let own = &radiosity[batch[0].instance];
         let irradiance = apply(&rows, &all);
         let missed = |i: usize| {
-            let right = added(node.optics.emission[i], scaled(node.optics.reflectance[i], irradiance[i]));
-            subtract(right, own[i])
+            let right = node.optics.emission[i] + node.optics.reflectance[i] * irradiance[i];
+            right - own[i]
         };
         residuals.values.extend(batch.iter().map(|cluster| cluster.receivers.clone().map(missed).collect()));
     }

@@ -13,7 +13,6 @@ use crate::exchange::system::residual;
 use crate::placed::Placed;
 use crate::statistics::mean_over_area;
 use enclosure::{Kept, is_compressed};
-use equilux_bake::equilibrium::added;
 use equilux_bake::monitor::Monitor;
 use equilux_formats::Rgb;
 use exact_rows::{Residuals, residuals};
@@ -74,7 +73,7 @@ pub fn prove(
     let measured = measured(placed, nodes, outcome, &chosen, &found);
     let bound = if measured.rows == placed.world.elements.len() {
         let exact = kept.enclose(&placed.split(&sizes(&found.values.concat()))).concat();
-        spread.iter().zip(exact).map(|(&a, b)| std::array::from_fn(|c| a[c].min(b[c]))).collect()
+        spread.iter().zip(exact).map(|(&a, b)| Rgb::from_fn(|c| a[c].min(b[c]))).collect()
     } else {
         spread.clone()
     };
@@ -108,14 +107,14 @@ fn measured(
 
 /// Root mean square over the scene's area: each cluster's own mean square over its area, for the area it speaks for.
 fn rms(placed: &Placed, chosen: &[Chosen], values: &[Vec<Rgb>]) -> Rgb {
-    let (mut squares, mut spoken) = ([0.0; 3], 0.0);
+    let (mut squares, mut spoken) = (Rgb::BLACK, 0.0);
     for (cluster, values) in chosen.iter().zip(values) {
         let elements =
             &placed.world.elements[placed.world.elements_of(cluster.instance)][cluster.receivers.clone()];
         let own: f64 = elements.iter().map(|e| e.area).sum();
         for (element, value) in elements.iter().zip(values) {
             let weight = cluster.area * element.area / own;
-            squares = std::array::from_fn(|c| squares[c] + weight * value[c] * value[c]);
+            squares += *value * weight * *value;
         }
         spoken += cluster.area;
     }
@@ -128,8 +127,7 @@ fn sizes(values: &[Rgb]) -> Vec<Rgb> {
 
 /// |a| + |b|, one vector an instance.
 fn sums_of_sizes(a: &[Vec<Rgb>], b: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
-    let sum = |(a, b): (&Vec<Rgb>, &Vec<Rgb>)| {
-        sizes(a).into_iter().zip(sizes(b)).map(|(a, b)| added(a, b)).collect()
-    };
+    let sum =
+        |(a, b): (&Vec<Rgb>, &Vec<Rgb>)| sizes(a).into_iter().zip(sizes(b)).map(|(a, b)| a + b).collect();
     a.iter().zip(b).map(sum).collect()
 }

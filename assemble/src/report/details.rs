@@ -40,7 +40,7 @@ impl Report {
             rgb(self.energy.emitted),
             rgb(self.energy.absorbed),
             rgb(self.energy.escaped),
-            self.energy.travelling.map(|power| format!("{power:.1e}")).join(" ")
+            self.energy.travelling.0.map(|power| format!("{power:.1e}")).join(" ")
         ));
         lines.push(format!(
             "column sums: {:.3} to {:.3}; collocation is exact by rows, so in a closed scene what is away from 1 shows as \

@@ -111,10 +111,10 @@ fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
 
 fn error(run: &Run) -> ErrorReport {
     let (placed, radiosity) = (&run.equation.placed, &run.outcome.radiosity);
-    let most = |bound: &[[f64; 3]]| largest(bound).into_iter().fold(0.0, f64::max);
+    let most = |bound: &[Rgb]| largest(bound).brightest();
     let Some(proof) = run.proof else {
         let proved = run.outcome.convergence.error_bound;
-        let everywhere = vec![[proved; 3]; radiosity.len()];
+        let everywhere = vec![Rgb::splat(proved); radiosity.len()];
         let proved_rms = rms_over_mean(&placed.world.elements, &everywhere, radiosity);
         return ErrorReport { proved, proved_rms, proved_from: "rounds", spread: None, exact_rows: None };
     };

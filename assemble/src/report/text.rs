@@ -2,6 +2,7 @@
 
 use super::{ErrorReport, Report, Verify};
 use crate::report::advice::Advice;
+use equilux_formats::Rgb;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -168,7 +169,7 @@ pub fn bytes(count: usize) -> String {
 }
 
 /// Three channels.
-pub fn rgb(v: [f64; 3]) -> String {
+pub fn rgb(v: Rgb) -> String {
     format!("{:.4} {:.4} {:.4}", v[0], v[1], v[2])
 }
 

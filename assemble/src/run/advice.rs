@@ -14,7 +14,6 @@ use crate::solve::settings::SolveSettings;
 use crate::solve::{Solved, solve_prepared};
 use crate::statistics::weighted_rms_over_mean;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::equilibrium::subtract;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::prepare::{Preparation, Prepared, prepare};
@@ -169,7 +168,7 @@ impl Trials<'_> {
 impl Sampled {
     /// Light at places, in turn a middle and one towards a corner, in a solved scene.
     fn of(lights: &[Option<PointLight>], solved: &Solved) -> Self {
-        let dark = [0.0; 3];
+        let dark = Rgb::BLACK;
         let [middles, aside] =
             [0, 1].map(|first| lights.iter().skip(first).step_by(2).copied().collect::<Vec<_>>());
         let at_points = |lights: &[Option<PointLight>]| {
@@ -186,5 +185,5 @@ impl Sampled {
 
 /// The root mean square difference over the mean of the second; the worst channel.
 fn off(values: &[Rgb], truth: &[Rgb]) -> f64 {
-    weighted_rms_over_mean(values.iter().zip(truth).map(|(&a, &b)| (subtract(a, b), b, 1.0)))
+    weighted_rms_over_mean(values.iter().zip(truth).map(|(&a, &b)| (a - b, b, 1.0)))
 }

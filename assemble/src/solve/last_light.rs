@@ -9,7 +9,7 @@ use std::path::Path;
 pub fn last_light(placed: &Placed, store: &Store, file: &Path) -> Option<Vec<Vec<Rgb>>> {
     let Lookup::Found(last) = store.load::<Solution>(&manifest(file).key()) else { return None };
     let of = |k: usize| {
-        let dark = || vec![[0.0; 3]; placed.world.elements_of(k).len()];
+        let dark = || vec![Rgb::BLACK; placed.world.elements_of(k).len()];
         let known = last.of(&placed.instances[k].name, placed.part_of(k).key);
         known.cloned().unwrap_or_else(dark)
     };

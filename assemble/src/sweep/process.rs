@@ -6,7 +6,7 @@ use super::setting::Setting;
 use crate::output_file;
 use csv::StringRecord;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Content, Error, Result};
+use equilux_formats::{Content, Error, Result, Rgb};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -154,10 +154,10 @@ impl Runner<'_> {
 /// The light on a line of points.csv, whose columns are place (3), normal (3), irradiance gathered (3), number of the
 /// element, irradiance of the element (3). `Some(None)` where the point lies on no surface; none if the line is malformed.
 fn point_light(line: &StringRecord) -> Option<Option<PointLight>> {
-    let rgb = |first: usize| -> Option<[f64; 3]> {
+    let rgb = |first: usize| -> Option<Rgb> {
         let numbers: Option<Vec<f64>> =
             (first..first + 3).map(|place| line.get(place)?.parse().ok()).collect();
-        numbers?.try_into().ok()
+        numbers?.try_into().ok().map(Rgb)
     };
     if line.get(9)?.is_empty() {
         return Some(None);

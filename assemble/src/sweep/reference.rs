@@ -34,11 +34,11 @@ impl Reference {
         if let Some(row) = areas.iter().position(|&area| area <= 0.0) {
             return Err(table.wrong_line(row, &format!("has an area of {}", areas[row])));
         }
-        let irradiance = table.vectors(["Hc_r", "Hc_g", "Hc_b"])?;
+        let irradiance = table.colours(["Hc_r", "Hc_g", "Hc_b"])?;
         let noise = if table.has("Hc_se_r") {
-            table.vectors(["Hc_se_r", "Hc_se_g", "Hc_se_b"])?
+            table.colours(["Hc_se_r", "Hc_se_g", "Hc_se_b"])?
         } else {
-            vec![[0.0; 3]; irradiance.len()]
+            vec![Rgb::BLACK; irradiance.len()]
         };
         Ok(Self { areas, irradiance, noise })
     }
@@ -51,11 +51,11 @@ impl Reference {
 
     /// Light at points that represent these areas; points where it is unknown get an area of zero.
     pub fn without_noise(areas: &[f64], known: impl Iterator<Item = Option<Rgb>>) -> Self {
-        let noise = vec![[0.0; 3]; areas.len()];
+        let noise = vec![Rgb::BLACK; areas.len()];
         let (areas, irradiance) = areas
             .iter()
             .zip(known)
-            .map(|(&area, known)| known.map_or((0.0, [0.0; 3]), |irradiance| (area, irradiance)))
+            .map(|(&area, known)| known.map_or((0.0, Rgb::BLACK), |irradiance| (area, irradiance)))
             .unzip();
         Self { areas, irradiance, noise }
     }

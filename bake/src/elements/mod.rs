@@ -7,8 +7,7 @@ pub mod merge;
 
 use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted, Rgb, Surface,
-    Tints,
+    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Optics, Part, Repainted, Surface, Tints,
 };
 use glam::DVec3;
 use merge::{Merged, merge};
@@ -142,8 +141,8 @@ pub fn optics(geometry: &Geometry, materials: &[Material], tints: &Tints) -> Opt
     let (reflectance, emission) = (tints.reflectance.iter(), tints.emission.iter());
     let elements = || geometry.elements.iter().map(of);
     Optics {
-        reflectance: elements().zip(reflectance).map(|(m, &tint)| tinted(m.reflectance, tint)).collect(),
-        emission: elements().zip(emission).map(|(m, &tint)| tinted(m.emission, tint)).collect(),
+        reflectance: elements().zip(reflectance).map(|(m, &tint)| m.reflectance * tint).collect(),
+        emission: elements().zip(emission).map(|(m, &tint)| m.emission * tint).collect(),
     }
 }
 
@@ -152,15 +151,11 @@ pub fn repainted(geometry: &Geometry, optics: &Optics, tints: &Tints, repainted:
     let mut here = optics.clone();
     for (i, element) in geometry.elements.iter().enumerate() {
         if let Some(new) = repainted.iter().find(|new| new.material == element.material) {
-            here.reflectance[i] = tinted(new.reflectance, tints.reflectance[i]);
-            here.emission[i] = tinted(new.emission, tints.emission[i]);
+            here.reflectance[i] = new.reflectance * tints.reflectance[i];
+            here.emission[i] = new.emission * tints.emission[i];
         }
     }
     here
-}
-
-fn tinted(colour: Rgb, tint: Rgb) -> Rgb {
-    std::array::from_fn(|c| colour[c] * tint[c])
 }
 
 /// The panels with parallelograms of one material joined to larger ones.

@@ -64,7 +64,7 @@ fn factored(mut matrix: Mat<f64>) -> Lu {
 
 /// B = U⁻¹ L⁻¹ P q.
 pub fn solve(factors: &Factors, sources: &[Rgb]) -> Vec<Rgb> {
-    let mut solution = vec![[0.0; 3]; sources.len()];
+    let mut solution = vec![Rgb::BLACK; sources.len()];
     for (channel, lu) in factors.channels.iter().enumerate() {
         let n = lu.size as usize;
         let served: Vec<usize> = (0..3).filter(|&c| factors.of_channel[c] as usize == channel).collect();

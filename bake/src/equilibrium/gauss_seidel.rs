@@ -1,7 +1,7 @@
 //! Gauss-Seidel: B_i ← q_i + ρ_i Σ_j F_ij B_j, each element at once with the newest values. Cohen & Wallace 1993,
 //! ch. 5.3.
 
-use super::channels::{added, largest, scaled, subtract};
+use super::channels::largest;
 use super::system::{LocalSystem, ROUNDING};
 use equilux_formats::Rgb;
 
@@ -29,12 +29,12 @@ pub fn solve(system: &LocalSystem, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
 /// One sweep over the elements; the clusters around each are kept up to date. Returns the largest change relative to
 /// the channel's largest radiosity.
 fn sweep(system: &LocalSystem, sources: &[Rgb], nodes: &mut [Rgb]) -> f64 {
-    let mut most_change = [0.0f64; 3];
+    let mut most_change = Rgb::BLACK;
     for (i, &source) in sources.iter().enumerate() {
         let irradiance = gather(system, i, nodes);
-        let new = added(source, scaled(system.reflectance[i], irradiance));
-        let change = subtract(new, nodes[i]);
-        most_change = std::array::from_fn(|c| most_change[c].max(change[c].abs()));
+        let new = source + system.reflectance[i] * irradiance;
+        let change = new - nodes[i];
+        most_change = most_change.max(change.abs());
         nodes[i] = new;
         raise_clusters(system, i, change, nodes);
     }
@@ -44,7 +44,7 @@ fn sweep(system: &LocalSystem, sources: &[Rgb], nodes: &mut [Rgb]) -> f64 {
 
 fn gather(system: &LocalSystem, receiver: usize, nodes: &[Rgb]) -> Rgb {
     let row = system.block.row(receiver);
-    row.fold([0.0; 3], |sum, (node, value)| added(sum, nodes[node].map(|b| b * value)))
+    row.fold(Rgb::BLACK, |sum, (node, value)| sum + nodes[node] * value)
 }
 
 fn raise_clusters(system: &LocalSystem, element: usize, change: Rgb, nodes: &mut [Rgb]) {
@@ -52,7 +52,7 @@ fn raise_clusters(system: &LocalSystem, element: usize, change: Rgb, nodes: &mut
     let mut node = element;
     while let Some(parent) = system.clusters.parent_of(node) {
         let share = area / system.clusters.area_of(parent);
-        nodes[parent] = added(nodes[parent], change.map(|c| c * share));
+        nodes[parent] += change * share;
         node = parent;
     }
 }

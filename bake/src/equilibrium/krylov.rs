@@ -3,7 +3,7 @@
 //!
 //! The matrix is only ever applied to a vector, by the caller: it may be dense, clusters, or blocks between parts.
 
-use super::channels::{added, largest, scaled, subtract};
+use super::channels::largest;
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 
@@ -32,10 +32,10 @@ pub fn gmres(
     x: &mut [Rgb],
     tolerance: f64,
 ) {
-    let mut previous = [f64::INFINITY; 3];
+    let mut previous = Rgb::splat(f64::INFINITY);
     for _ in 0..RESTARTS {
         let ax = apply(x);
-        let residual: Vec<Rgb> = rhs.iter().zip(&ax).map(|(&b, &a)| subtract(b, a)).collect();
+        let residual: Vec<Rgb> = rhs.iter().zip(&ax).map(|(&b, &a)| b - a).collect();
         let (left, scale) = (largest(&residual), largest(x));
         let open: [bool; 3] =
             std::array::from_fn(|c| left[c] > tolerance * scale[c] && left[c] < 0.5 * previous[c]);
@@ -43,23 +43,23 @@ pub fn gmres(
             break;
         }
         previous = left;
-        let target: Rgb = std::array::from_fn(|c| tolerance * scale[c].max(left[c]));
+        let target: Rgb = Rgb::from_fn(|c| tolerance * scale[c].max(left[c]));
         let residual: Vec<Rgb> =
-            residual.iter().map(|r| std::array::from_fn(|c| if open[c] { r[c] } else { 0.0 })).collect();
+            residual.iter().map(|r| Rgb::from_fn(|c| if open[c] { r[c] } else { 0.0 })).collect();
         let mut space = Space::new(&residual);
         while !space.is_full() && (0..3).any(|c| space.left()[c] > target[c]) {
             let z = precondition(space.newest());
             let az = apply(&z);
             space.add(z, az);
         }
-        x.iter_mut().zip(space.correction()).for_each(|(x, z)| *x = added(*x, z));
+        x.iter_mut().zip(space.correction()).for_each(|(x, z)| *x += z);
     }
 }
 
 /// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as [`RESTART`] directions come; and rhs − A z.
 pub fn roughly(mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>, rhs: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
     let mut space = Space::new(rhs);
-    let target = space.left().map(|norm| norm * share);
+    let target = space.left() * share;
     while !space.is_full() && (0..3).any(|c| space.left()[c] > target[c]) {
         let z = space.newest().to_vec();
         let az = apply(&z);
@@ -124,7 +124,7 @@ impl Space {
 
 /// Σ share_k vector_k.
 fn combined(shares: &[Rgb], vectors: &[Vec<Rgb>], length: usize) -> Vec<Rgb> {
-    let mut sum = vec![[0.0; 3]; length];
+    let mut sum = vec![Rgb::BLACK; length];
     add_combined(&mut sum, shares, vectors);
     sum
 }
@@ -134,7 +134,7 @@ fn add_combined(sum: &mut [Rgb], shares: &[Rgb], vectors: &[Vec<Rgb>]) {
     sum.par_chunks_mut(PIECE).enumerate().for_each(|(number, piece)| {
         for (&share, vector) in shares.iter().zip(vectors) {
             let vector = &vector[number * PIECE..];
-            piece.iter_mut().zip(vector).for_each(|(sum, &v)| *sum = added(*sum, scaled(share, v)));
+            piece.iter_mut().zip(vector).for_each(|(sum, &v)| *sum += share * v);
         }
     });
 }
@@ -142,13 +142,13 @@ fn add_combined(sum: &mut [Rgb], shares: &[Rgb], vectors: &[Vec<Rgb>]) {
 /// Take the components along `basis` out of `w` (Gram-Schmidt; again where little is left, after Daniel, Gragg, Kaufman &
 /// Stewart 1976); returns them and the norm of what is left.
 fn orthogonalise(w: &mut [Rgb], basis: &[Vec<Rgb>]) -> (Vec<Rgb>, Rgb) {
-    let (mut column, mut left) = (vec![[0.0; 3]; basis.len()], [0.0; 3]);
+    let (mut column, mut left) = (vec![Rgb::BLACK; basis.len()], Rgb::BLACK);
     // Twice is enough: Giraud, Langou & Rozložník 2005.
     for _ in 0..2 {
         let along = dots(w, basis);
         let taken: Vec<Rgb> = along.iter().map(|along| along.map(|along| -along)).collect();
         add_combined(w, &taken, basis);
-        column.iter_mut().zip(&along).for_each(|(sum, &along)| *sum = added(*sum, along));
+        column.iter_mut().zip(&along).for_each(|(sum, &along)| *sum += along);
         left = norm(w);
         let taken = norm(&along);
         if (0..3).all(|c| left[c] >= NEW * taken[c]) {
@@ -164,31 +164,30 @@ fn dots(w: &[Rgb], vectors: &[Vec<Rgb>]) -> Vec<Rgb> {
         vectors.iter().map(|vector| dot(piece, &vector[number * PIECE..])).collect()
     };
     let pieces: Vec<Vec<Rgb>> = w.par_chunks(PIECE).enumerate().map(of).collect();
-    (0..vectors.len()).map(|k| pieces.iter().fold([0.0; 3], |sum, piece| added(sum, piece[k]))).collect()
+    (0..vectors.len()).map(|k| pieces.iter().fold(Rgb::BLACK, |sum, piece| sum + piece[k])).collect()
 }
 
 fn dot(a: &[Rgb], b: &[Rgb]) -> Rgb {
-    a.iter().zip(b).fold([0.0; 3], |sum, (&a, &b)| added(sum, scaled(a, b)))
+    a.iter().zip(b).fold(Rgb::BLACK, |sum, (&a, &b)| sum + a * b)
 }
 
 /// The Euclidean norm of each channel, safe from overflow: squares of 1e200 would be infinite.
 fn norm(v: &[Rgb]) -> Rgb {
     let pieces: Vec<Rgb> = v.par_chunks(PIECE).map(|piece| dot(piece, piece)).collect();
-    let squares = pieces.into_iter().fold([0.0; 3], added);
+    let squares: Rgb = pieces.into_iter().sum();
     if squares.iter().all(|square| SAFE.contains(square)) {
         return squares.map(f64::sqrt);
     }
     let most = largest(v);
     let unit = most.map(|m| if m > 0.0 { m } else { 1.0 });
-    let squares = v
-        .iter()
-        .fold([0.0; 3], |sum, v| std::array::from_fn(|c| sum[c] + (v[c] / unit[c]) * (v[c] / unit[c])));
-    std::array::from_fn(|c| squares[c].sqrt() * most[c])
+    let squares =
+        v.iter().fold(Rgb::BLACK, |sum, v| Rgb::from_fn(|c| sum[c] + (v[c] / unit[c]) * (v[c] / unit[c])));
+    squares.map(f64::sqrt) * most
 }
 
 /// The vector over its length; a channel without length stays out of the game as zeros.
 fn normalise(v: &mut [Rgb], length: Rgb) {
-    let over = |v: Rgb| std::array::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { 0.0 });
+    let over = |v: Rgb| Rgb::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { 0.0 });
     v.par_chunks_mut(PIECE).for_each(|piece| piece.iter_mut().for_each(|v| *v = over(*v)));
 }
 
@@ -210,29 +209,29 @@ impl LeastSquares {
     fn add_column(&mut self, mut column: Vec<Rgb>, below: Rgb) {
         for (k, (cos, sin)) in self.rotations.iter().enumerate() {
             let (upper, lower) = (column[k], column[k + 1]);
-            column[k] = added(scaled(*cos, upper), scaled(*sin, lower));
-            column[k + 1] = subtract(scaled(*cos, lower), scaled(*sin, upper));
+            column[k] = *cos * upper + *sin * lower;
+            column[k + 1] = *cos * lower - *sin * upper;
         }
         let last = column.len() - 1;
-        let length: Rgb = std::array::from_fn(|c| column[last][c].hypot(below[c]));
+        let length: Rgb = Rgb::from_fn(|c| column[last][c].hypot(below[c]));
         let over = |v: Rgb, identity: f64| {
-            std::array::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { identity })
+            Rgb::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { identity })
         };
         let (cos, sin) = (over(column[last], 1.0), over(below, 0.0));
         column[last] = length;
         self.columns.push(column);
         self.rotations.push((cos, sin));
-        self.rhs.push(scaled(cos, self.residual));
-        self.residual = scaled(sin.map(|s| -s), self.residual);
+        self.rhs.push(cos * self.residual);
+        self.residual = sin.map(|s| -s) * self.residual;
     }
 
     fn solve(&self) -> Vec<Rgb> {
         let mut y = self.rhs.clone();
         for k in (0..y.len()).rev() {
             let pivot = self.columns[k][k];
-            y[k] = std::array::from_fn(|c| if pivot[c] > 0.0 { y[k][c] / pivot[c] } else { 0.0 });
+            y[k] = Rgb::from_fn(|c| if pivot[c] > 0.0 { y[k][c] / pivot[c] } else { 0.0 });
             for above in 0..k {
-                y[above] = subtract(y[above], scaled(self.columns[k][above], y[k]));
+                y[above] = y[above] - self.columns[k][above] * y[k];
             }
         }
         y
@@ -240,12 +239,12 @@ impl LeastSquares {
 
     /// β e₁ − H y for the best y: what the rotations left in the last place, turned back.
     fn left_along_basis(&self) -> Vec<Rgb> {
-        let mut left = vec![[0.0; 3]; self.rotations.len() + 1];
+        let mut left = vec![Rgb::BLACK; self.rotations.len() + 1];
         left[self.rotations.len()] = self.residual;
         for (k, &(cos, sin)) in self.rotations.iter().enumerate().rev() {
             let (upper, lower) = (left[k], left[k + 1]);
-            left[k] = subtract(scaled(cos, upper), scaled(sin, lower));
-            left[k + 1] = added(scaled(sin, upper), scaled(cos, lower));
+            left[k] = cos * upper - sin * lower;
+            left[k + 1] = sin * upper + cos * lower;
         }
         left
     }

@@ -18,7 +18,7 @@ use columns::Columns;
 use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
 use system::ROUNDING;
 
-pub use channels::{added, largest, scaled, subtract};
+pub use channels::largest;
 pub use system::{LocalSystem, apply};
 
 /// Up to this many elements the direct solver is chosen when nobody chooses. Its factors take n² numbers to keep and to
@@ -33,8 +33,8 @@ pub fn default_solver(elements: usize) -> LocalSolver {
 impl LocalSystem<'_> {
     /// The radiosity B that solves (I − ρF) B = `sources`, starting from `guess`; both W/m², one row an element.
     pub fn solve(&self, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
-        if sources.iter().all(|q| *q == [0.0; 3]) {
-            return vec![[0.0; 3]; sources.len()];
+        if sources.iter().all(|q| *q == Rgb::BLACK) {
+            return vec![Rgb::BLACK; sources.len()];
         }
         match self.solver {
             LocalSolver::Direct => {
@@ -53,7 +53,7 @@ impl LocalSystem<'_> {
     /// A B near that solution, and what it leaves of the sources; both W/m². Solvers that have no way to stop early leave
     /// nothing but rounding, and say so. `share` is what may be left.
     pub fn solve_roughly(&self, sources: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
-        let nothing = vec![[0.0; 3]; sources.len()];
+        let nothing = vec![Rgb::BLACK; sources.len()];
         match self.solver {
             LocalSolver::Iterative => krylov::roughly(|b| self.without_reflection(b), sources, share),
             _ => (self.solve(sources, &nothing), nothing),

@@ -6,7 +6,6 @@
 //! there are, the slow light between them, which goes to and fro many times, is smooth and hardly differs from a sum of
 //! the answers to these. Local responses as a coarse space: Dryja & Widlund 1994; Spillane et al. 2014 for slow modes.
 
-use super::channels::{added, scaled};
 use super::system::LocalSystem;
 use crate::geometry::aabb::Aabb;
 use equilux_formats::{Answers, Element, Geometry, Rgb};
@@ -30,9 +29,9 @@ pub fn answers(system: &LocalSystem, geometry: &Geometry) -> Answers {
     let mut answers = Answers::default();
     for (number, light) in lights(&geometry.elements).into_iter().enumerate() {
         let reflected =
-            |i: usize| -> Rgb { scaled(system.reflectance[i], [open[i] * light(&geometry.elements[i]); 3]) };
+            |i: usize| -> Rgb { system.reflectance[i] * (open[i] * light(&geometry.elements[i])) };
         let sources: Vec<Rgb> = (0..areas.len()).map(reflected).collect();
-        if sources.iter().all(|source| *source == [0.0; 3]) {
+        if sources.iter().all(|source| *source == Rgb::BLACK) {
             continue;
         }
         let (radiosity, _) = system.solve_roughly(&sources, ROUGH);
@@ -68,7 +67,7 @@ fn lights(elements: &[Element]) -> Vec<Light> {
 fn returned(areas: &[f64], open: &[f64], radiosity: &[Rgb]) -> Rgb {
     let arriving: f64 = areas.iter().zip(open).map(|(area, open)| area * open).sum();
     let weights = areas.iter().zip(open).map(|(area, open)| area * open / arriving);
-    weights.zip(radiosity).fold([0.0; 3], |sum, (weight, b)| added(sum, b.map(|b| b * weight)))
+    weights.zip(radiosity).fold(Rgb::BLACK, |sum, (weight, b)| sum + *b * weight)
 }
 
 /// What is new in `vector` compared with `basis`, of length one in each channel; zeros in a channel in which nothing is,
@@ -80,20 +79,18 @@ fn orthonormal(mut vector: Vec<Rgb>, basis: &[Vec<Rgb>], areas: &[f64]) -> Optio
         for known in basis {
             let along = product(&vector, known, areas);
             let pairs = vector.iter_mut().zip(known);
-            pairs.for_each(|(v, &k)| *v = std::array::from_fn(|c| v[c] - along[c] * k[c]));
+            pairs.for_each(|(v, &k)| *v = *v - along * k);
         }
     }
     let length = product(&vector, &vector, areas).map(f64::sqrt);
     let is_new = |c: usize| length[c] > NEW * before[c] && length[c].is_finite();
-    let share = std::array::from_fn(|c| if is_new(c) { 1.0 / length[c] } else { 0.0 });
-    vector
-        .iter_mut()
-        .for_each(|v| *v = std::array::from_fn(|c| if share[c] > 0.0 { v[c] * share[c] } else { 0.0 }));
-    (share != [0.0; 3]).then_some(vector)
+    let share = Rgb::from_fn(|c| if is_new(c) { 1.0 / length[c] } else { 0.0 });
+    vector.iter_mut().for_each(|v| *v = Rgb::from_fn(|c| if share[c] > 0.0 { v[c] * share[c] } else { 0.0 }));
+    (share != Rgb::BLACK).then_some(vector)
 }
 
 /// Σ_i A_i a_i b_i, channel by channel.
 fn product(a: &[Rgb], b: &[Rgb], areas: &[f64]) -> Rgb {
     let terms = areas.iter().zip(a.iter().zip(b));
-    terms.fold([0.0; 3], |sum, (area, (&a, &b))| added(sum, scaled(a, b).map(|ab| ab * area)))
+    terms.fold(Rgb::BLACK, |sum, (area, (&a, &b))| sum + a * b * *area)
 }

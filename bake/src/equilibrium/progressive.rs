@@ -1,7 +1,7 @@
 //! Progressive refinement: the element with the most unshot radiosity shoots first (Southwell relaxation). Cohen,
 //! Chen, Wallace & Greenberg 1988; Gortler & Cohen 1993 for the equivalence with Southwell.
 
-use super::channels::{added, largest, scaled, subtract};
+use super::channels::largest;
 use super::columns::Columns;
 use super::system::{LocalSystem, ROUNDING};
 use equilux_formats::Rgb;
@@ -12,9 +12,8 @@ pub fn solve(system: &LocalSystem, columns: &Columns, sources: &[Rgb], guess: &[
     // Updates gather rounding over many shots: the residual is taken afresh until it is small at the start.
     loop {
         let irradiance = system.irradiance(&b);
-        let mut unshot: Vec<Rgb> = (0..b.len())
-            .map(|i| subtract(added(sources[i], scaled(system.reflectance[i], irradiance[i])), b[i]))
-            .collect();
+        let mut unshot: Vec<Rgb> =
+            (0..b.len()).map(|i| sources[i] + system.reflectance[i] * irradiance[i] - b[i]).collect();
         let shots = shoot(system, columns, &mut b, &mut unshot);
         if shots == 0 {
             return b;
@@ -25,7 +24,7 @@ pub fn solve(system: &LocalSystem, columns: &Columns, sources: &[Rgb], guess: &[
 /// Shoot until no channel has more than rounding left; returns the number of shots.
 fn shoot(system: &LocalSystem, columns: &Columns, b: &mut [Rgb], unshot: &mut [Rgb]) -> usize {
     let start = largest(b);
-    let scale: Rgb = std::array::from_fn(|c| start[c].max(largest(unshot)[c]).max(f64::MIN_POSITIVE));
+    let scale: Rgb = Rgb::from_fn(|c| start[c].max(largest(unshot)[c]).max(f64::MIN_POSITIVE));
     let share = |r: &Rgb| (0..3).map(|c| r[c].abs() / scale[c]).fold(0.0, f64::max);
     for shots in 0.. {
         let (brightest, most) = unshot
@@ -37,7 +36,7 @@ fn shoot(system: &LocalSystem, columns: &Columns, b: &mut [Rgb], unshot: &mut [R
             return shots;
         }
         let shot = std::mem::take(&mut unshot[brightest]);
-        b[brightest] = added(b[brightest], shot);
+        b[brightest] += shot;
         shoot_one(system, columns, brightest, shot, unshot);
     }
     unreachable!("the loop above ends only by returning")
@@ -51,7 +50,7 @@ fn shoot_one(system: &LocalSystem, columns: &Columns, element: usize, shot: Rgb,
         let share = shot.map(|s| s * area / system.clusters.area_of(sender));
         for &(receiver, value) in columns.column(sender) {
             let i = receiver as usize;
-            unshot[i] = added(unshot[i], scaled(system.reflectance[i], share.map(|s| s * value)));
+            unshot[i] += system.reflectance[i] * share * value;
         }
         node = system.clusters.parent_of(sender);
     }

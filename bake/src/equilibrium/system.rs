@@ -1,6 +1,5 @@
 //! One part's own equation (I − ρF) B = q as solvers see it: its block F and reflectance ρ.
 
-use super::channels::{scaled, subtract};
 use super::columns::Columns;
 use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
 use rayon::prelude::*;
@@ -42,7 +41,7 @@ impl<'a> LocalSystem<'a> {
     /// (I − ρF) B.
     pub(super) fn without_reflection(&self, b: &[Rgb]) -> Vec<Rgb> {
         let irradiance = self.irradiance(b);
-        (0..b.len()).map(|i| subtract(b[i], scaled(self.reflectance[i], irradiance[i]))).collect()
+        (0..b.len()).map(|i| b[i] - self.reflectance[i] * irradiance[i]).collect()
     }
 }
 

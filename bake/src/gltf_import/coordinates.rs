@@ -101,7 +101,7 @@ pub(super) fn vertex_colours(
             "paint the mesh again, or remove its vertex colours",
         ));
     }
-    let colour = |values: &[f64]| std::array::from_fn(|c| values[c].clamp(0.0, 1.0));
+    let colour = |values: &[f64]| Rgb::from_fn(|c| values[c].clamp(0.0, 1.0));
     Ok(Some(values.chunks_exact(dimensions.multiplicity()).map(colour).collect()))
 }
 

@@ -4,7 +4,7 @@ use super::document::Document;
 use super::exporters::light_units;
 use super::nodes::Placed;
 use super::notes::Notes;
-use equilux_formats::{Camera, LightKind, PunctualLight, Result};
+use equilux_formats::{Camera, LightKind, PunctualLight, Result, Rgb};
 use glam::{DAffine3, DMat3, DVec3};
 use gltf::khr_lights_punctual::{Kind, Light};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -37,7 +37,7 @@ pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Res
         name: placed.name(),
         position: DVec3::ZERO,
         direction: DVec3::NEG_Z,
-        intensity,
+        intensity: Rgb(intensity),
         units: light_units(document.gltf.as_json().asset.generator.as_deref()),
         kind,
         angle: placed.extras.angular_diameter.unwrap_or(0.0).to_radians(),
@@ -51,7 +51,7 @@ pub(super) fn moved(light: &PunctualLight, placement: DAffine3, emission_scale: 
         position: placement.transform_point3(light.position),
         // A node flattened to nothing leaves no direction; the light keeps its own.
         direction: placement.transform_vector3(light.direction).try_normalize().unwrap_or(light.direction),
-        intensity: light.intensity.map(|i| i * emission_scale),
+        intensity: light.intensity * emission_scale,
         ..light.clone()
     }
 }

@@ -9,7 +9,7 @@ use super::coordinates::Use;
 use super::document::Document;
 use super::images::{self, Alpha, image_of};
 use super::notes::Notes;
-use equilux_formats::{Material, Result, Textures};
+use equilux_formats::{Material, Result, Rgb, Textures};
 use gltf::material::AlphaMode;
 use gltf::texture::Info;
 use std::f64::consts::PI;
@@ -39,8 +39,8 @@ impl Paint {
         let there = if self.blends { alpha } else { 1.0 };
         Material {
             name: self.name.clone(),
-            reflectance: [red, green, blue].map(|rho| rho * there),
-            emission: self.emissive_factor.map(|factor| PI * (factor * self.emissive_strength)),
+            reflectance: Rgb([red, green, blue]) * there,
+            emission: Rgb(self.emissive_factor).map(|factor| PI * (factor * self.emissive_strength)),
             double_sided: self.double_sided,
             textures: self.textures.clone(),
         }

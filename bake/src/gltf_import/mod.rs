@@ -18,7 +18,6 @@ mod drafts;
 mod exporters;
 mod extras;
 mod files;
-mod glb;
 mod images;
 mod instancing;
 mod lights;

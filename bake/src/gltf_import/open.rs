@@ -3,11 +3,11 @@
 use super::buffers::Buffers;
 use super::document::Document;
 use super::files::{Files, file_name};
-use super::glb::{Chunks, split};
 use super::images::read_images;
 use super::instancing::INSTANCING;
 use super::normal_form::{SPECULAR_GLOSSINESS, WEBP, normalise};
 use super::notes::Notes;
+use equilux_formats::glb::{Chunks, split};
 use equilux_formats::{Error, Result};
 use gltf::json;
 use gltf::json::validation::{Error as Fault, Validate};

@@ -117,7 +117,7 @@ impl Colouring {
             colours: self
                 .colours
                 .as_ref()
-                .map_or([[1.0; 3]; 3], |colours| vertices.map(|vertex| colours[vertex])),
+                .map_or([Rgb::WHITE; 3], |colours| vertices.map(|vertex| colours[vertex])),
             reflectance_at: at(&self.reflectance_at),
             emission_at: at(&self.emission_at),
         }

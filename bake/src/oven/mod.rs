@@ -252,5 +252,5 @@ fn geometry_digest(geometry: &Geometry) -> Digest {
 }
 
 fn rgb_digest(values: &[Rgb]) -> Digest {
-    Content::new().f64s(values.as_flattened()).digest()
+    Content::new().f64s(&Rgb::channels(values)).digest()
 }

@@ -48,7 +48,7 @@ impl Sums<'_> {
     fn inside(&self, corners: &[DVec2]) -> Rgb {
         let from = corners[0];
         let area = edges(corners).map(|(p, q)| (p - from).perp_dot(q - from)).sum::<f64>() / 2.0;
-        let mut sum = [0.0; 3];
+        let mut sum = Rgb::BLACK;
         for (from, to) in edges(corners) {
             for ends in self.stops(from, to).windows(2) {
                 let value = self.left_of(between(from, to, ends));
@@ -56,14 +56,14 @@ impl Sums<'_> {
                 (0..3).for_each(|c| sum[c] += value[c] * rise);
             }
         }
-        sum.map(|sum| sum / area)
+        sum / area
     }
 
     /// The average over a polygon whose points lie on a line as `at` says, counted in texels.
     fn along_line(&self, polygon: &[DVec3], at: impl Fn(DVec3) -> DVec2, [from, to]: [DVec2; 2]) -> Rgb {
         let along = to - from;
         let share = |p: DVec3| (at(p) - from).dot(along) / along.length_squared();
-        let (mut rest, mut sum, mut whole) = (Some(Polygon::from_slice(polygon)), [0.0; 3], 0.0);
+        let (mut rest, mut sum, mut whole) = (Some(Polygon::from_slice(polygon)), Rgb::BLACK, 0.0);
         for ends in self.stops(from, to).windows(2) {
             let Some(left) = rest.take() else { break };
             let parts = if ends[1] == 1.0 { [Some(left), None] } else { part(&left, |p| ends[1] - share(p)) };
@@ -74,7 +74,7 @@ impl Sums<'_> {
             (0..3).for_each(|c| sum[c] += colour[c] * area);
             whole += area;
         }
-        if whole > 0.0 { sum.map(|sum| sum / whole) } else { self.at((from + to) / 2.0) }
+        if whole > 0.0 { sum / whole } else { self.at((from + to) / 2.0) }
     }
 
     /// Where an edge passes from texel to texel, in shares of it from 0 to 1.
@@ -156,7 +156,7 @@ mod tests {
             assert_eq!(digits(mean_of(&sums, &reversed)), digits(mean));
             let far = quad.map(|place| place + dvec2(1000.0, -74.0));
             assert!(wrap.contains(&Wrap::Clamp) || digits(mean_of(&sums, &far)) == digits(mean), "{wrap:?}");
-            let mut points = [0.0; 3];
+            let mut points = Rgb::BLACK;
             for k in 0..160_000 {
                 let (s, t) = ((f64::from(k % 400) + 0.5) / 400.0, (f64::from(k / 400) + 0.5) / 400.0);
                 let colour = sums.at((from + u * s + v * t) * dvec2(37.0, 5.0));
@@ -241,7 +241,7 @@ mod tests {
             let triangle = TexturedTriangle {
                 material: MaterialId(0),
                 corners,
-                colours: [[1.0; 3]; 3],
+                colours: [Rgb::WHITE; 3],
                 reflectance_at: None,
                 emission_at: None,
             };

@@ -80,13 +80,13 @@ impl<'a> Coat<'a> {
         let nearest = shares.iter().map(|share| share.distance).fold(f64::INFINITY, f64::min);
         shares.retain(|share| share.distance <= nearest + self.slack);
         let textures = &self.materials[material.index()].textures;
-        let (mut covered, mut reflectance, mut emission) = (0.0, [0.0; 3], [0.0; 3]);
+        let (mut covered, mut reflectance, mut emission) = (0.0, Rgb::BLACK, Rgb::BLACK);
         for Share { sheet, piece, .. } in &shares {
             let (area, middle) = area_and_middle(piece);
             // What has no area but rounding has a colour all the same.
             let area = area.max(f64::MIN_POSITIVE);
             let tint = |texture: &Option<Arc<Texture>>, places: Option<[DVec2; 3]>| {
-                let (Some(texture), Some(places)) = (texture, places) else { return [1.0; 3] };
+                let (Some(texture), Some(places)) = (texture, places) else { return Rgb::WHITE };
                 self.sums[&Arc::as_ptr(texture).addr()].mean(piece, |p| sheet.at(p, places))
             };
             let colour = sheet.colour(middle);
@@ -102,7 +102,7 @@ impl<'a> Coat<'a> {
         let area = area_and_middle(corners).0;
         let plain = if area - covered > BENT * area { area - covered } else { 0.0 };
         let average = |sums: Rgb| sums.map(|sum| ((sum + plain) / (covered + plain)).clamp(0.0, 1.0));
-        if shares.is_empty() { ([1.0; 3], [1.0; 3]) } else { (average(reflectance), average(emission)) }
+        if shares.is_empty() { (Rgb::WHITE, Rgb::WHITE) } else { (average(reflectance), average(emission)) }
     }
 
     fn shares(&self, corners: &[DVec3], normal: DVec3, material: MaterialId) -> Vec<Share<'_>> {
@@ -141,7 +141,7 @@ impl<'a> Sheet<'a> {
     }
 
     fn bounds(&self, joined: f64) -> Aabb {
-        Aabb::around(&self.triangle.corners).grown(self.slack(joined))
+        Aabb::around(self.triangle.corners).grown(self.slack(joined))
     }
 
     /// What of a polygon lies over the triangle.
@@ -175,7 +175,7 @@ impl<'a> Sheet<'a> {
 
     fn colour(&self, p: DVec3) -> Rgb {
         let (weights, colours) = (self.weights(p), &self.triangle.colours);
-        std::array::from_fn(|c| (0..3).map(|corner| weights[corner] * colours[corner][c]).sum())
+        Rgb::from_fn(|c| (0..3).map(|corner| weights[corner] * colours[corner][c]).sum())
     }
 }
 

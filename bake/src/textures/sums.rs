@@ -56,28 +56,27 @@ impl<'a> Sums<'a> {
     /// The average of the whole image.
     pub(super) fn whole(&self) -> Rgb {
         let [width, height] = self.texture.size.map(|size| size as usize);
-        let rows = (0..height).map(|row| self.before(width, row).map(|sum| sum as f64));
-        let sum = rows.fold([0.0; 3], |sum: Rgb, row| std::array::from_fn(|c| sum[c] + row[c]));
-        sum.map(|sum| sum / (ONE * (width * height) as f64))
+        let sum: Rgb = (0..height).map(|row| Rgb(self.before(width, row).map(|sum| sum as f64))).sum();
+        sum / (ONE * (width * height) as f64)
     }
 
     /// The colour at a place, counted in texels.
     pub(super) fn at(&self, place: DVec2) -> Rgb {
         let [column, row] = [0, 1].map(|axis| self.wrapped(place[axis].floor(), axis));
-        self.texel(column, row).map(|value| value as f64 / ONE)
+        Rgb(self.texel(column, row).map(|value| value as f64 / ONE))
     }
 
     /// The sum of the colours along a row from column 0 to a place, in texels; negative left of it.
     pub(super) fn left_of(&self, place: DVec2) -> Rgb {
         let (row, column) = (self.wrapped(place.y.floor(), 1), place.x.floor());
         let (whole, texel) = (self.along(column, row), self.at(place));
-        std::array::from_fn(|c| whole[c] + texel[c] * (place.x - column))
+        whole + texel * (place.x - column)
     }
 
     /// The sum from column 0 to any, left of it counted as negative.
     fn along(&self, column: f64, row: usize) -> Rgb {
         let width = self.texture.size[0] as usize;
-        let sum = |column: usize| self.before(column, row).map(|sum| sum as f64 / ONE);
+        let sum = |column: usize| Rgb(self.before(column, row).map(|sum| sum as f64 / ONE));
         let total = sum(width);
         let (periods, rest) = match self.texture.wrap[0] {
             Wrap::Repeat => (column.div_euclid(width as f64), sum(column.rem_euclid(width as f64) as usize)),
@@ -85,7 +84,7 @@ impl<'a> Sums<'a> {
                 let (there_and_back, at) = (2 * width, column.rem_euclid(2.0 * width as f64) as usize);
                 let back = |at| {
                     let left = sum(there_and_back - at);
-                    std::array::from_fn(|c| 2.0 * total[c] - left[c])
+                    total * 2.0 - left
                 };
                 let rest = if at <= width { sum(at) } else { back(at) };
                 (2.0 * column.div_euclid(there_and_back as f64), rest)
@@ -93,10 +92,10 @@ impl<'a> Sums<'a> {
             Wrap::Clamp => {
                 let beyond = column - column.clamp(0.0, width as f64);
                 let (edge, inside) = (self.at(dvec2(column, row as f64)), sum((column - beyond) as usize));
-                return std::array::from_fn(|c| inside[c] + edge[c] * beyond);
+                return inside + edge * beyond;
             }
         };
-        std::array::from_fn(|c| periods * total[c] + rest[c])
+        total * periods + rest
     }
 
     /// The texel that stands at a column (axis 0) or row (axis 1).

@@ -27,7 +27,6 @@ impl<'a> Audience<'a> {
 }
 
 /// One block to compute.
-
 pub struct Request<'a> {
     /// The geometry.
     pub world: &'a World,

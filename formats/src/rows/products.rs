@@ -45,7 +45,7 @@ impl<T, N: Fn(&T) -> f64> pulp::NullaryFnOnce for Products<'_, T, N> {
                 seen.iter().zip(row(k)).fold([0.0; 4], |sum, (b, value)| plus(sum, (self.number)(value), b)),
             );
         }
-        sums.iter().map(|&[r, g, b, _]| [r, g, b]).collect()
+        sums.iter().map(|&[r, g, b, _]| Rgb([r, g, b])).collect()
     }
 }
 

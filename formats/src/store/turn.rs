@@ -33,7 +33,7 @@ impl Store {
         let folder = self.folder.join("locks");
         std::fs::create_dir_all(&folder)?;
         let path = folder.join(&key.to_string()[..2]);
-        // Somebody else's file can be locked too, as long as it can be read.
-        File::options().create(true).append(true).open(&path).or_else(|_| File::open(&path))
+        // Another user's file can be locked too, as long as it can be read. Windows locks no file that is open for appending only.
+        File::options().create(true).read(true).append(true).open(&path).or_else(|_| File::open(&path))
     }
 }

@@ -1,6 +1,6 @@
 //! The light file: optics, local equilibrium, and the factors of the direct solver.
 
-use super::{Stored, array_of, check, finite_array, finite_rows};
+use super::{Stored, array_of, check, finite_array, finite_lights};
 use crate::baked::{Answers, BakedLight, Factors, LocalEquilibrium, Lu};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
@@ -39,23 +39,23 @@ impl Stored for BakedLight {
             returned: answers.returned,
         };
         let mut writer = Writer::new(Self::KIND, manifest, &meta);
-        writer.array("reflectance", self.optics.reflectance.as_flattened());
-        writer.array("emission", self.optics.emission.as_flattened());
-        writer.array("radiosity", self.local.radiosity.as_flattened());
+        writer.array("reflectance", &Rgb::channels(&self.optics.reflectance));
+        writer.array("emission", &Rgb::channels(&self.optics.emission));
+        writer.array("radiosity", &Rgb::channels(&self.local.radiosity));
         for (i, lu) in factors.iter().flat_map(|f| &f.channels).enumerate() {
             writer.array(&factors_name(i), &lu.packed);
             writer.array(&permutation_name(i), &lu.rows);
         }
         for (i, radiosity) in answers.radiosity.iter().enumerate() {
-            writer.array(&answer_name(i), radiosity.as_flattened());
+            writer.array(&answer_name(i), &Rgb::channels(radiosity));
         }
-        writer.array("answers' matrix", answers.matrix.as_flattened());
+        writer.array("answers' matrix", &Rgb::channels(&answers.matrix));
         writer
     }
 
     fn read(reader: &mut Reader) -> Result<Self> {
         let meta: Meta = reader.meta()?;
-        let reflectance = finite_rows::<3>(reader, "reflectance")?;
+        let reflectance = finite_lights(reader, "reflectance")?;
         let elements = reflectance.len();
         let emission = one_an_element(reader, "emission", elements)?;
         let radiosity = one_an_element(reader, "radiosity", elements)?;
@@ -82,7 +82,7 @@ fn answer_name(number: usize) -> String {
 fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<Answers> {
     let of = |number| one_an_element(reader, &answer_name(number), elements);
     let radiosity: Vec<Vec<Rgb>> = (0..meta.answers).map(of).collect::<Result<_>>()?;
-    let matrix = finite_rows::<3>(reader, "answers' matrix")?;
+    let matrix = finite_lights(reader, "answers' matrix")?;
     let pairs = radiosity.len() * radiosity.len();
     check(reader, matrix.len() == pairs, || {
         format!("{} entries for {pairs} pairs of answers", matrix.len())
@@ -94,7 +94,7 @@ fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<Ans
 }
 
 fn one_an_element(reader: &mut Reader, name: &str, elements: usize) -> Result<Vec<Rgb>> {
-    let rows = finite_rows::<3>(reader, name)?;
+    let rows = finite_lights(reader, name)?;
     check(reader, rows.len() == elements, || format!("{} {name} of {elements} elements", rows.len()))?;
     Ok(rows)
 }

@@ -1,6 +1,6 @@
 //! A solution file: the names and parts of the instances, and one array of radiosities.
 
-use super::{Stored, check, finite_rows};
+use super::{Stored, check, finite_lights};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
@@ -12,13 +12,13 @@ impl Stored for Solution {
 
     fn write(&self, manifest: &Manifest) -> Writer {
         let mut writer = Writer::new(Self::KIND, manifest, &self.instances);
-        writer.array("radiosity", self.radiosity.concat().as_flattened());
+        writer.array("radiosity", &Rgb::channels(&self.radiosity.concat()));
         writer
     }
 
     fn read(reader: &mut Reader) -> Result<Self> {
         let instances: Vec<SolvedInstance> = reader.meta()?;
-        let all = finite_rows::<3>(reader, "radiosity")?;
+        let all = finite_lights(reader, "radiosity")?;
         let total = instances.iter().try_fold(0usize, |sum, known| sum.checked_add(known.elements));
         check(reader, total == Some(all.len()), || {
             format!("{} radiosities of {total:?} elements", all.len())

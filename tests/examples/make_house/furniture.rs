@@ -2,14 +2,14 @@
 //! the lamp hangs from it.
 
 use crate::rooms::{named, paint};
-use equilux_formats::{Material, Part};
+use equilux_formats::{Material, Part, Rgb};
 use equilux_tests::shapes::{joined, solid};
 use glam::{DVec3, dvec3};
 use std::f64::consts::PI;
 
 /// A pendant lamp: a warm shade on a thin rod.
 pub fn lamp() -> Part {
-    let glow = Material { emission: [1.0, 0.8, 0.56].map(|l| PI * 14.0 * l), ..paint(0.8, 0.8, 0.8) };
+    let glow = Material { emission: Rgb([1.0, 0.8, 0.56].map(|l| PI * 14.0 * l)), ..paint(0.8, 0.8, 0.8) };
     let shade = block(&glow, dvec3(-0.2, -0.75, -0.2), dvec3(0.2, -0.5, 0.2));
     let rod = block(&paint(0.3, 0.3, 0.3), dvec3(-0.015, -0.5, -0.015), dvec3(0.015, 0.0, 0.015));
     named("lamp", joined([shade, rod]), Some(0.2))

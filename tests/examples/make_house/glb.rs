@@ -1,11 +1,10 @@
 //! A part as a binary glTF file: one mesh, a primitive a material, two triangles a rectangle.
 
-use equilux_formats::{Material, Part, Surface};
+use equilux_formats::{Material, Part, Rgb, Surface, glb};
 use glam::{DVec3, Vec3};
-use gltf::binary::{Glb, Header};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
-use std::io::{Error, Result};
+use std::io::Result;
 use std::path::Path;
 
 const FLOAT: u32 = 5126;
@@ -35,13 +34,7 @@ pub fn write(path: &Path, part: &Part) -> Result<()> {
         "bufferViews": [{ "buffer": 0, "byteLength": bytes.len(), "target": ARRAY_BUFFER }],
         "buffers": [{ "byteLength": bytes.len() }],
     });
-    let glb = Glb {
-        // The lengths are set as it is written.
-        header: Header { magic: *b"glTF", version: 2, length: 0 },
-        json: document.to_string().into_bytes().into(),
-        bin: Some(bytes.into()),
-    };
-    std::fs::write(path, glb.to_vec().map_err(Error::other)?)
+    std::fs::write(path, glb::file(document.to_string().as_bytes(), &bytes)?)
 }
 
 /// Where `material` is among the `known` ones, added if it is new.
@@ -72,14 +65,14 @@ fn extras(part: &Part) -> Value {
 
 /// Emission E = πL; glTF's strength carries what is above one.
 fn material_json(material: &Material) -> Value {
-    let [red, green, blue] = material.reflectance;
+    let Rgb([red, green, blue]) = material.reflectance;
     let radiance = material.emission.map(|e| e / PI);
     let strength = radiance.into_iter().fold(1.0, f64::max);
     let mut json = json!({
         "pbrMetallicRoughness": {
             "baseColorFactor": [red, green, blue, 1.0], "metallicFactor": 0.0, "roughnessFactor": 1.0,
         },
-        "emissiveFactor": radiance.map(|l| l / strength),
+        "emissiveFactor": radiance / strength,
     });
     if strength > 1.0 {
         json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = json!(strength);

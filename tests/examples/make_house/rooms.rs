@@ -1,7 +1,7 @@
 //! The parts that enclose: a room with a door and a window, half a hall with two doors, and what fills a window.
 
 use crate::furniture::block;
-use equilux_formats::{Material, Part, Textures};
+use equilux_formats::{Material, Part, Rgb, Textures};
 use equilux_tests::shapes::{joined, part, rectangle};
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use std::f64::consts::PI;
@@ -75,7 +75,7 @@ pub fn hall() -> Part {
 /// A pane as bright as an overcast sky, and the cross of bars before it. Stands at the middle of the pane's lower edge.
 pub fn window() -> Part {
     let size = WINDOW.high - WINDOW.low;
-    let sky = Material { emission: [0.6, 0.8, 1.0].map(|l| PI * 2.5 * l), ..paint(0.1, 0.1, 0.1) };
+    let sky = Material { emission: Rgb([0.6, 0.8, 1.0].map(|l| PI * 2.5 * l)), ..paint(0.1, 0.1, 0.1) };
     let pane = rectangle(part(sky), dvec3(-size.x / 2.0, 0.0, 0.0), DVec3::X * size.x, DVec3::Y * size.y);
     let wood = paint(0.6, 0.55, 0.5);
     let (thin, near) = (0.03, 0.06);
@@ -138,8 +138,8 @@ fn slabs(floor: Material, low: DVec3, high: DVec3) -> Part {
 pub fn paint(red: f64, green: f64, blue: f64) -> Material {
     Material {
         name: String::new(),
-        reflectance: [red, green, blue],
-        emission: [0.0; 3],
+        reflectance: Rgb([red, green, blue]),
+        emission: Rgb::BLACK,
         double_sided: false,
         textures: Textures::default(),
     }

@@ -8,7 +8,7 @@ use crate::model::{Model, Node};
 use crate::rooms::half;
 use crate::shapes::{fine, grey, joined, moved, part, quad, rectangle, room, self_block, solid, triangle};
 use equilux_bake::equilibrium::{LocalSystem, factorise};
-use equilux_formats::{LocalSolver, Part, Surface};
+use equilux_formats::{LocalSolver, Part, Rgb, Surface};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use serde_json::json;
 
@@ -152,7 +152,7 @@ fn every_solver() -> Finding {
     let geometry = fine(&furnished(0.9), 0.2);
     let block = self_block(&geometry);
     let n = geometry.elements.len();
-    let (reflectance, emission) = (vec![[0.9; 3]; n], vec![[1.0; 3]; n]);
+    let (reflectance, emission) = (vec![Rgb::splat(0.9); n], vec![Rgb::WHITE; n]);
     let solved = |solver: LocalSolver| {
         let factors = factorise(&block, &geometry.clusters, &reflectance, solver);
         LocalSystem::new(&block, &geometry.clusters, &reflectance, solver, factors.as_ref())

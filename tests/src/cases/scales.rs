@@ -10,7 +10,7 @@ use crate::workshop::Workshop;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::treecode::EXACT;
 use equilux_bake::world::World;
-use equilux_formats::{Material, Rows};
+use equilux_formats::{Material, Rgb, Rows};
 use glam::{DAffine3, DVec3, dvec3};
 use serde_json::json;
 
@@ -49,8 +49,11 @@ pub fn cases() -> Vec<Case> {
             light(&rooms, &Setting::metres(0.5).to(1e-6)).worst(uniform)
         }),
         Case::new("red 1e12, blue 1e-12, in one room", 1e-6, "asked to stop at 1e-6, of each colour", || {
-            let paint =
-                Material { reflectance: [0.1, 0.5, 0.9], emission: [1e12, 1.0, 1e-12], ..grey(0.0, 0.0) };
+            let paint = Material {
+                reflectance: Rgb([0.1, 0.5, 0.9]),
+                emission: Rgb([1e12, 1.0, 1e-12]),
+                ..grey(0.0, 0.0)
+            };
             light(&two_halves(paint, 0.0), &Setting::metres(0.5).to(1e-6)).worst(uniform)
         }),
     ]

@@ -132,12 +132,13 @@ impl Solved {
 
 /// B = E / (1 − ρ): where everything reflects and emits the same and no light gets out.
 pub fn uniform(lit: &Lit) -> Rgb {
-    std::array::from_fn(|c| lit.emission[c] / (1.0 - lit.reflectance[c]))
+    Rgb::from_fn(|c| lit.emission[c] / (1.0 - lit.reflectance[c]))
 }
 
 fn lit(table: &Table) -> Vec<Lit> {
     let [centroids, normals] = [["x", "y", "z"], ["nx", "ny", "nz"]].map(|names| table.vectors(names));
-    let rgb = |row: usize, name: &str| ["r", "g", "b"].map(|c| table.number(row, &format!("{name}_{c}")));
+    let rgb =
+        |row: usize, name: &str| Rgb(["r", "g", "b"].map(|c| table.number(row, &format!("{name}_{c}"))));
     (0..table.rows())
         .map(|row| Lit {
             centroid: centroids[row],

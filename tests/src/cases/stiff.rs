@@ -4,7 +4,7 @@ use super::solve::{Setting, Solved, light, uniform};
 use super::{Case, Finding};
 use crate::model::Node;
 use crate::shapes::{grey, joined, part, rectangle, room};
-use equilux_formats::{Material, Part};
+use equilux_formats::{Material, Part, Rgb};
 use glam::{DVec3, dvec3};
 
 /// The cases.
@@ -46,7 +46,7 @@ fn off_the_whole(solved: &Solved) -> Finding {
 fn as_the_floor(setting: &Setting) -> Finding {
     let solved = light(&[Node::new("tower", tower(1.0))], setting);
     let floor =
-        solved.elements.iter().map(|lit| lit.emission).fold([0.0; 3], |a, b| if b > a { b } else { a });
+        solved.elements.iter().map(|lit| lit.emission).fold(Rgb::BLACK, |a, b| if b > a { b } else { a });
     solved.worst(|_| floor)
 }
 

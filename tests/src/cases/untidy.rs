@@ -5,7 +5,7 @@ use super::{Case, Finding};
 use crate::model::Node;
 use crate::rooms::{half, lamp};
 use crate::shapes::{grey, joined, moved, part, rectangle, room, solid, triangle};
-use equilux_formats::{Material, Part};
+use equilux_formats::{Material, Part, Rgb};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// The cases.
@@ -65,7 +65,7 @@ fn cube() -> Part {
 
 /// A closed room that shines.
 fn furnace(reflectance: [f64; 3]) -> Node {
-    let paint = Material { reflectance, ..lamp([1.0; 3]) };
+    let paint = Material { reflectance: Rgb(reflectance), ..lamp([1.0; 3]) };
     Node::new("furnace", room(paint, DVec3::ZERO, DVec3::ONE))
 }
 
@@ -79,7 +79,7 @@ fn refused(nodes: &[Node], cells: usize) -> Finding {
 }
 
 fn dark(cells: usize) -> Finding {
-    let paint = Material { emission: [0.0; 3], ..grey(1.0, 0.0) };
+    let paint = Material { emission: Rgb::BLACK, ..grey(1.0, 0.0) };
     let room = Node::new("room", room(paint, DVec3::ZERO, DVec3::ONE));
     let solved = light(&[room], &Setting::metres(0.5).cut(cells));
     let all = solved.elements.iter().flat_map(|lit| lit.radiosity);

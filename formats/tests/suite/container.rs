@@ -1,80 +1,13 @@
-//! What the cache promises: what comes back is what was put in, to the last bit, or a sentence that says why not.
+//! What files promise: what comes back is what was put in, to the last bit, or a sentence that says why not.
 
+use crate::samples::{coupling, folder, light, manifest, part, read, read_bytes, written};
 use equilux_formats::{
-    Answers, BakedGeometry, BakedLight, ClusterTree, Content, Corners, Element, Error, FORMAT_VERSION, Face,
-    FaceId, Factors, Geometry, Kind, LocalEquilibrium, LocalSolver, Lookup, Lu, Manifest, MaterialId, Optics,
-    Precision, Reader, RowGroup, Rows, Store, Stored, Writer,
+    BakedGeometry, BakedLight, Error, FORMAT_VERSION, FaceId, Kind, Manifest, Precision, Reader, Rows,
+    Stored, Writer,
 };
-use glam::DVec3;
 use proptest::prelude::*;
 use std::fmt::Debug;
-use std::path::{Path, PathBuf};
-use tempfile::TempDir;
-
-fn manifest() -> Manifest {
-    Manifest::new()
-        .setting("kernel", 1)
-        .digest("geometry of hall", Content::new().f64s(&[1.0, 2.0]).digest())
-        .setting("element size", "0.25 m")
-}
-
-/// A quad and a triangle far from the origin, in coordinates that no short decimal has.
-fn part() -> BakedGeometry {
-    let at = |x: f64, y: f64| DVec3::new(x / 3.0 + 1e4, y / 7.0 - 0.1, -0.0);
-    let quad = [at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)];
-    let triangle = [at(2.0, 0.0), at(3.0, 0.0), at(2.0, 1.0)];
-    let elements = vec![
-        Element::new(Corners::quad(quad), MaterialId(0), FaceId(0)),
-        Element::new(Corners::triangle(triangle).flipped(), MaterialId(1), FaceId(1)),
-    ];
-    let faces = vec![Face::new(quad.to_vec()), Face::new(triangle.to_vec())];
-    let areas: Vec<f64> = elements.iter().map(|element| element.area).collect();
-    let clusters = ClusterTree::new(&areas, vec![[0, 1]]).unwrap();
-    let self_block = Rows::from_rows(3, [vec![(1, 0.1 + 0.2)], vec![(0, 1e-300), (1, 0.0)]]);
-    BakedGeometry { geometry: Geometry { elements, faces, clusters }, self_block }
-}
-
-fn light() -> BakedLight {
-    let lu = |pivot| Lu { size: 2, packed: vec![pivot, 0.5, -0.25, 0.75], rows: vec![1, 0] };
-    let factors = Some(Factors { channels: vec![lu(1.0), lu(0.9)], of_channel: [0, 1, 0] });
-    let optics =
-        Optics { reflectance: vec![[0.5, 0.25, 0.5]; 2], emission: vec![[0.0; 3], [10.0, 1e12, 1e-12]] };
-    let answers = Answers {
-        radiosity: vec![vec![[0.5, 0.25, 0.0]; 2]],
-        matrix: vec![[0.125, 1e-9, 0.0]],
-        returned: [0.75, 0.5, 0.0],
-    };
-    let radiosity = vec![[1.0 / 3.0; 3]; 2];
-    let local = LocalEquilibrium { solver: LocalSolver::Direct, radiosity, factors, answers };
-    BakedLight { optics, local }
-}
-
-fn coupling() -> Rows {
-    let together = RowGroup { columns: vec![0, 4], values: vec![0.125, 1e-9, 0.0, 0.25], receivers: 2 };
-    let alone = RowGroup { columns: vec![2], values: vec![1.0], receivers: 1 };
-    Rows::from_groups(5, [together, alone], Precision::Single)
-}
-
-fn folder() -> TempDir {
-    tempfile::tempdir().unwrap()
-}
-
-fn written<T: Stored>(folder: &TempDir, value: &T) -> (PathBuf, Vec<u8>) {
-    let path = folder.path().join("whole.eqx");
-    value.write(&manifest()).write_to(&path).unwrap();
-    let bytes = std::fs::read(&path).unwrap();
-    (path, bytes)
-}
-
-fn read<T: Stored>(path: &Path) -> Result<T, Error> {
-    T::read(&mut Reader::open(path, T::KIND)?)
-}
-
-fn read_bytes<T: Stored>(folder: &TempDir, bytes: &[u8]) -> Result<T, Error> {
-    let path = folder.path().join("changed.eqx");
-    std::fs::write(&path, bytes).unwrap();
-    read(&path)
-}
+use std::path::Path;
 
 /// Every harm that one byte can do to the file of `value` is found out.
 fn damage_is_found<T: Stored + Debug>(value: &T) {
@@ -283,47 +216,6 @@ fn a_failed_write_leaves_no_litter() {
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "only what was there before");
 }
 
-#[test]
-fn the_store_finds_what_it_keeps_and_nothing_else() {
-    let folder = folder();
-    let store = Store::open(folder.path().join("new/cache")).unwrap();
-    let (manifest, other) = (manifest(), manifest().setting("tolerance", 0));
-    assert!(matches!(store.load::<Rows>(&manifest.key()), Lookup::Missing));
-
-    store.save(&manifest, &coupling()).unwrap();
-    store.save(&manifest, &light()).unwrap();
-    assert!(matches!(store.load::<Rows>(&manifest.key()), Lookup::Found(rows) if rows == coupling()));
-    assert!(matches!(store.load::<BakedLight>(&manifest.key()), Lookup::Found(found) if found == light()));
-    assert!(matches!(store.load::<BakedGeometry>(&manifest.key()), Lookup::Missing));
-
-    let misplaced = store.path(Kind::Coupling, other.key());
-    std::fs::copy(store.path(Kind::Coupling, manifest.key()), &misplaced).unwrap();
-    let Lookup::Damaged(error) = store.load::<Rows>(&other.key()) else { panic!("another key's content") };
-    assert!(error.to_string().contains(&manifest.key().to_string()), "{error}");
-    store.save(&other, &coupling()).unwrap();
-    assert!(matches!(store.load::<Rows>(&other.key()), Lookup::Found(_)), "saving replaces a damaged file");
-}
-
-#[test]
-fn the_store_remembers_what_each_name_was_made_from() {
-    let folder = folder();
-    let store = Store::open(folder.path()).unwrap();
-    assert_eq!(store.last_manifest("level.glb hall"), None);
-    store.remember("level.glb hall", &Manifest::new()).unwrap();
-    store.remember("level.glb hall", &manifest()).unwrap();
-    assert_eq!(store.last_manifest("level.glb hall"), Some(manifest()));
-    assert_eq!(store.last_manifest("level.glb cell"), None);
-}
-
-#[test]
-fn a_cache_that_cannot_be_written_names_the_way_out() {
-    let folder = folder();
-    let file = folder.path().join("file");
-    std::fs::write(&file, "").unwrap();
-    let message = Store::open(file.join("cache")).unwrap_err().to_string();
-    assert!(message.contains("file/cache") && message.contains("--cache DIR"), "{message}");
-}
-
 #[cfg(unix)]
 #[test]
 fn others_may_read_what_is_cached() {
@@ -338,67 +230,4 @@ fn others_may_read_what_is_cached() {
         format!("{:o}", mode(&ordinary)),
         "as any file under this umask"
     );
-}
-
-#[test]
-fn the_reason_names_what_differs() {
-    let old = manifest();
-    let hall = |x: f64| Content::new().f64s(&[x]).digest();
-    let new = |size: &str, x: f64| {
-        Manifest::new().setting("kernel", 1).digest("geometry of hall", hall(x)).setting("element size", size)
-    };
-    let cases = [
-        (manifest(), None),
-        (manifest().setting("tolerance", 0), Some("tolerance is new, 0")),
-        (manifest().digest("occluder pillar", hall(0.0)), Some("occluder pillar is new")),
-        (new("0.25 m", 9.0), Some("geometry of hall changed")),
-        (new("0.5 m", 9.0), Some("geometry of hall changed; element size was 0.25 m, is 0.5 m")),
-        (
-            Manifest::new().setting("kernel", 2),
-            Some("kernel was 1, is 2; geometry of hall is gone; element size is gone"),
-        ),
-    ];
-    for (new, reason) in cases {
-        assert_eq!(new.difference(&old).as_deref(), reason);
-    }
-    let cut = |size: &str, x: f64| Manifest::new().digest("geometry", hall(x)).remark("element size", size);
-    for (new, reason) in [
-        (cut("0.5 m", 1.0), Some("geometry changed; element size was 0.25 m, is 0.5 m")),
-        // The same geometry in a scene where it stands half as large.
-        (cut("0.5 m", 0.0), None),
-    ] {
-        assert_eq!(new.difference(&cut("0.25 m", 0.0)).as_deref(), reason);
-    }
-    let (ab, ba) =
-        (Manifest::new().setting("a", 1).setting("b", 2), Manifest::new().setting("b", 2).setting("a", 1));
-    assert_eq!(ab.difference(&ba).as_deref(), Some("the order of the inputs changed"));
-}
-
-fn any_manifest() -> impl Strategy<Value = Manifest> {
-    proptest::collection::vec((0..3, 0..2u8), 0..4).prop_map(|entries| {
-        entries.into_iter().enumerate().fold(Manifest::new(), |manifest, (i, (kind, value))| {
-            let label = ["kernel", "geometry", "size", "tolerance"][i];
-            match kind {
-                0 => manifest.digest(label, Content::new().bytes([value]).digest()),
-                1 => manifest.setting(label, value),
-                _ => manifest.remark(label, value),
-            }
-        })
-    })
-}
-
-proptest! {
-    #[test]
-    fn there_is_a_reason_exactly_when_the_key_changes(old in any_manifest(), new in any_manifest()) {
-        prop_assert_eq!(new.difference(&old).is_some(), new.key() != old.key(), "{:?} {:?}", old, new);
-    }
-}
-
-#[test]
-fn content_is_hashed_by_value_and_by_piece() {
-    let floats = |values: &[f64]| Content::new().f64s(values).digest();
-    assert_eq!(floats(&[-0.0, 1.0]), floats(&[0.0, 1.0]), "zero has one digest");
-    assert_ne!(floats(&[1.0, 2.0]), floats(&[2.0, 1.0]));
-    let pieces = |a: &str, b: &str| Content::new().bytes(a).bytes(b).digest();
-    assert_ne!(pieces("ab", "c"), pieces("a", "bc"));
 }

@@ -1,12 +1,16 @@
-//! The binary container of glTF: `.glb` bytes → JSON and binary chunk. glTF 2.0 specification, §4.4.
+//! The binary container of glTF, `.glb`: a JSON chunk and a binary chunk. glTF 2.0 specification, §4.4.
 //!
-//! Chunks of other types and bytes after the stated length are skipped, as the specification asks. Own code, as the
+//! Reading skips chunks of other types and bytes after the stated length, as the specification asks. Own code, as the
 //! `gltf` crate refuses such files.
 
+use std::io::{self, Write};
+
 /// The JSON of a file and, in a `.glb`, its binary chunk.
-pub(super) struct Chunks<'a> {
-    pub(super) json: &'a [u8],
-    pub(super) binary: Option<&'a [u8]>,
+pub struct Chunks<'a> {
+    /// The text of the JSON.
+    pub json: &'a [u8],
+    /// The binary chunk, if there is one.
+    pub binary: Option<&'a [u8]>,
 }
 
 /// Bytes before the first chunk: magic, version, length.
@@ -15,8 +19,34 @@ const HEADER: usize = 12;
 /// Bytes before the contents of a chunk: length, type.
 const CHUNK_HEADER: usize = 8;
 
+/// Writes a container of two chunks to `out`, each filled up to a multiple of four bytes: the JSON with blanks, the binary
+/// chunk with zeros. Fails as `out` does, or if the file would have 4 GiB or more.
+pub fn write(out: &mut (impl Write + ?Sized), json: &[u8], binary: &[u8]) -> io::Result<()> {
+    let length = HEADER
+        + [json, binary].map(|chunk| CHUNK_HEADER + chunk.len().next_multiple_of(4)).iter().sum::<usize>();
+    let length = u32::try_from(length).map_err(|_| io::Error::other("a .glb file of 4 GiB or more"))?;
+    out.write_all(b"glTF")?;
+    out.write_all(&2_u32.to_le_bytes())?;
+    out.write_all(&length.to_le_bytes())?;
+    for (kind, chunk, fill) in [(b"JSON", json, b' '), (b"BIN\0", binary, 0)] {
+        let padded = chunk.len().next_multiple_of(4);
+        out.write_all(&(padded as u32).to_le_bytes())?;
+        out.write_all(kind)?;
+        out.write_all(chunk)?;
+        out.write_all(&[fill; 4][..padded - chunk.len()])?;
+    }
+    Ok(())
+}
+
+/// The bytes of a container of two chunks, as [`write`] writes it.
+pub fn file(json: &[u8], binary: &[u8]) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    write(&mut bytes, json, binary)?;
+    Ok(bytes)
+}
+
 /// Splits `bytes`, which are JSON unless they start as a container does. Fails with what is wrong with the container.
-pub(super) fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
+pub fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     if !bytes.starts_with(b"glTF") {
         // The specification allows readers to ignore a byte order mark.
         let json = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
@@ -60,4 +90,20 @@ fn chunks(mut rest: &[u8]) -> Result<Vec<Chunk<'_>>, String> {
 fn number(bytes: &[u8], offset: usize) -> Option<usize> {
     let bytes = bytes.get(offset..)?.first_chunk()?;
     Some(u32::from_le_bytes(*bytes) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_container_is_laid_out_as_the_specification_draws_it() {
+        let bytes = file(b"{\"a\":1}", b"xyzuv").unwrap();
+        let header = b"glTF\x02\0\0\0\x2c\0\0\0";
+        let json = b"\x08\0\0\0JSON{\"a\":1} ";
+        let binary = b"\x08\0\0\0BIN\0xyzuv\0\0\0";
+        assert_eq!(bytes, [&header[..], json, binary].concat());
+        let chunks = split(&bytes).unwrap();
+        assert_eq!((chunks.json, chunks.binary), (&b"{\"a\":1} "[..], Some(&b"xyzuv\0\0\0"[..])));
+    }
 }

@@ -2,8 +2,8 @@
 //! and too little room.
 
 use equilux_formats::{
-    Answers, BakedLight, Content, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rows,
-    Store, Swept, Tally, remove_left_over_beside, write_whole,
+    Answers, BakedLight, Content, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rgb,
+    Rows, Store, Swept, Tally, remove_left_over_beside, write_whole,
 };
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -24,10 +24,11 @@ fn coupling() -> Rows {
 }
 
 fn light() -> BakedLight {
-    let optics = Optics { reflectance: vec![[0.5, 0.25, 0.5]], emission: vec![[10.0, 1e12, 1e-12]] };
+    let optics =
+        Optics { reflectance: vec![Rgb([0.5, 0.25, 0.5])], emission: vec![Rgb([10.0, 1e12, 1e-12])] };
     let local = LocalEquilibrium {
         solver: LocalSolver::Iterative,
-        radiosity: vec![[1.0 / 3.0; 3]],
+        radiosity: vec![Rgb([1.0 / 3.0; 3])],
         factors: None,
         answers: Answers::default(),
     };

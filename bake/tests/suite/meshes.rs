@@ -1,6 +1,6 @@
 //! What a mesh hides by its silhouette, against clipping by each of its faces, and against the light that must arrive.
 
-#[path = "../../tests/src/curved.rs"]
+#[path = "../../../tests/src/curved.rs"]
 mod curved;
 
 use curved::{Triangle, sphere, torus};
@@ -12,7 +12,7 @@ use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon};
 use equilux_bake::outline::Plane;
 use equilux_bake::world::World;
 use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Surface, Textures,
+    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Rgb, Surface, Textures,
 };
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
@@ -119,8 +119,8 @@ fn part(surfaces: impl IntoIterator<Item = Corners>, double_sided: bool) -> Part
     let surfaces = surfaces.into_iter().map(|corners| Surface::new(corners, MaterialId(0))).collect();
     let grey = Material {
         name: String::new(),
-        reflectance: [0.5; 3],
-        emission: [0.0; 3],
+        reflectance: Rgb([0.5; 3]),
+        emission: Rgb::BLACK,
         double_sided,
         textures: Textures::default(),
     };
