@@ -10,7 +10,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let solved = solve(&file, &SolveSettings::default())?;
     let brightness = |element: usize| solved.irradiance[element].luminance();
     let all = 0..solved.elements().len();
-    let brightest = all.max_by(|&a, &b| brightness(a).total_cmp(&brightness(b))).ok_or("the scene is empty")?;
+    let brightest =
+        all.max_by(|&a, &b| brightness(a).total_cmp(&brightness(b))).ok_or("the scene is empty")?;
     let element = &solved.elements()[brightest];
     println!("{:.2?} W/m² at {:.2}", solved.irradiance[brightest].0, element.centroid);
 
