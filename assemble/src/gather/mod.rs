@@ -20,6 +20,7 @@ pub mod outside;
 pub mod piece;
 pub mod points;
 pub mod receiver;
+pub mod sampling;
 pub mod sky;
 
 use crate::placed::Placed;
