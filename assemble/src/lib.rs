@@ -37,7 +37,7 @@ pub mod outputs;
 #[doc(hidden)]
 pub mod picture;
 #[doc(hidden)]
-pub mod placed;
+pub mod placed_parts;
 #[doc(hidden)]
 pub mod proof;
 #[doc(hidden)]

@@ -1,12 +1,21 @@
-//! Files that are there whole or not at all. In goes a path and a closure that writes; out comes the file under its
-//! name, or the old one untouched.
+//! Output files that are written whole or not at all. Input: a path and a closure that writes the contents. Output: the
+//! complete file under that path, or the previous file unchanged.
 
 use equilux_formats::{Error, Result, remove_left_over_beside, write_whole};
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Puts what `fill` writes at `path` in one step. Fails when the folder cannot be written or is full, and then leaves
-/// nothing behind. Takes away what a killed run left half-written beside it.
+/// Files that were written, with notes about them.
+#[derive(Debug)]
+pub struct WrittenFiles {
+    /// Paths of the files.
+    pub paths: Vec<PathBuf>,
+    /// Notes for the report, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Write the contents that `fill` produces to `path` in one step. Fails if the folder is not writable or the disk is full, and
+/// then leaves no file behind. Removes temporary files that a killed run left beside `path`.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<()> {
     remove_left_over_beside(path);
     write_whole(path, fill).map_err(|error| {

@@ -1,6 +1,6 @@
 //! The classic matrix radiosity of the whole scene, on the same elements: what the parts must agree with.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::proof::exact_rows::ROWS_PER_EXACT_ROW;
 use equilux_bake::equilibrium::{LocalSystem, default_solver, factorise};
 use equilux_bake::monitor::Monitor;
@@ -23,7 +23,7 @@ pub struct Classic {
 
 /// Compute the whole matrix at once and solve it at once. Fails if the monitor was stopped.
 /// `optics` are those of all elements, emission with all that drives the exchange.
-pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Classic> {
+pub fn classic(placed: &PlacedParts, optics: &Optics, monitor: &Monitor) -> Result<Classic> {
     let (matrix, form_factor_time) = whole_matrix(placed, monitor)?;
     let start = Instant::now();
     let trees: Vec<&ClusterTree> =
@@ -37,7 +37,7 @@ pub fn classic(placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Cl
 }
 
 /// Every form factor of the scene, element by element.
-fn whole_matrix(placed: &Placed, monitor: &Monitor) -> Result<(Rows, Duration)> {
+fn whole_matrix(placed: &PlacedParts, monitor: &Monitor) -> Result<(Rows, Duration)> {
     let world = &placed.world;
     let element: Vec<u32> =
         (0..world.nodes.len()).map(|node| world.element_of(node).map_or(u32::MAX, |e| e as u32)).collect();

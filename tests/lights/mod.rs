@@ -7,11 +7,11 @@ mod spots;
 mod units;
 
 use equilux_assemble::gather::Gather;
-use equilux_assemble::gather::faces::Plane;
+use equilux_assemble::gather::faces::CoplanarFaces;
 use equilux_assemble::gather::lights::Lights;
 use equilux_assemble::gather::outside::lights;
-use equilux_assemble::gather::piece::Piece;
 use equilux_assemble::gather::sky::Sky;
+use equilux_assemble::gather::surface_piece::SurfacePiece;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
@@ -49,12 +49,12 @@ fn direct(scene: &Lit, lights: &Lights) -> Vec<f64> {
     let world = &scene.placed.world;
     let dark: Vec<Rgb> = vec![Rgb::BLACK; world.elements.len()];
     let gather = Gather::new(&scene.placed, &dark, &dark, lights, EXACT);
-    let planes: Vec<Plane> = world.elements.iter().map(|e| gather.faces().plane_of(e.face)).collect();
-    let pieces: Vec<Piece> = world
+    let planes: Vec<CoplanarFaces> = world.elements.iter().map(|e| gather.faces().plane_of(e.face)).collect();
+    let pieces: Vec<SurfacePiece> = world
         .elements
         .iter()
         .zip(&planes)
-        .map(|(e, plane)| Piece { corners: e.corners.as_slice(), normal: e.normal, plane })
+        .map(|(e, plane)| SurfacePiece { corners: e.corners.as_slice(), normal: e.normal, plane })
         .collect();
     gather.direct(&pieces, Rgb::BLACK).iter().map(|h| h[0]).collect()
 }
@@ -307,7 +307,7 @@ fn a_texel_under_a_crate_is_dark_and_one_beside_it_is_not() {
             dvec3(x + size, 0.0, z + size),
             dvec3(x + size, 0.0, z),
         ];
-        let pieces = [Piece { corners: &corners, normal: DVec3::Y, plane: &plane }];
+        let pieces = [SurfacePiece { corners: &corners, normal: DVec3::Y, plane: &plane }];
         gather.direct(&pieces, Rgb([1.0; 3]))[0][0] + gather.reflected_over(&pieces, Rgb([1.0; 3]))[0][0]
     };
     for (x, z) in [(1.0, 1.0), (1.2, 1.3), (1.45, 1.45)] {

@@ -2,7 +2,7 @@
 //! blocks are those that are computed from nothing.
 
 use equilux_assemble::equation::coupling::Coupled;
-use equilux_assemble::placed::Placed;
+use equilux_assemble::placed_parts::PlacedParts;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::{EXACT, Resolution};
@@ -121,7 +121,7 @@ fn edit(things: &mut Vec<Thing>, dice: &mut Dice, number: usize) -> String {
 }
 
 /// All blocks of a scene, and how many form factors were computed for them.
-fn blocks(file: &Path, cache: &Path, resolution: Resolution) -> (Placed, Vec<Coupled>, usize) {
+fn blocks(file: &Path, cache: &Path, resolution: Resolution) -> (PlacedParts, Vec<Coupled>, usize) {
     let wanted = Preparation {
         element_size: Some(ElementSize::Metres(0.5)),
         division: Division::Authored,
@@ -141,7 +141,7 @@ fn scene(things: &[Thing]) -> Model {
 }
 
 /// Largest difference of an instance's blocks from its rows of the whole matrix, entry by entry.
-fn difference(placed: &Placed, instance: usize, blocks: &Coupled, whole: &Rows) -> f64 {
+fn difference(placed: &PlacedParts, instance: usize, blocks: &Coupled, whole: &Rows) -> f64 {
     let (own, first) =
         (blocks.self_block(&placed.part_of(instance).part.self_block), placed.world.nodes_of(instance).start);
     let row = |i: usize| {

@@ -8,7 +8,7 @@ use equilux_assemble::exchange::exchange;
 use equilux_assemble::exchange::listener::Unobserved;
 use equilux_assemble::exchange::settings::Goal;
 use equilux_assemble::exchange::settings::Method;
-use equilux_assemble::placed::Placed;
+use equilux_assemble::placed_parts::PlacedParts;
 use equilux_assemble::statistics::largest_difference;
 use equilux_assemble::verify::classic;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
@@ -84,7 +84,7 @@ proptest! {
             let at = DVec3::X * 4.0 * number as f64;
             instances.push(instance("bench", 1, DAffine3::from_mat3_translation(turn, at)));
         }
-        let placed = Placed::new(baked, instances);
+        let placed = PlacedParts::new(baked, instances);
         let coupler = Coupler { placed: &placed, store: &store, file: Path::new("scene"), resolution: EXACT, monitor: &monitor };
         let coupled: Vec<_> =
             (0..4).map(|k| coupler.couple(k).expect("no error")).collect();

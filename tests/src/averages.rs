@@ -4,9 +4,9 @@ use crate::lit::{Lit, lit};
 use crate::table::Table;
 use crate::truth::{Errors, gathered};
 use equilux_assemble::gather::Gather;
-use equilux_assemble::gather::faces::{Faces, Plane};
+use equilux_assemble::gather::faces::{CoplanarFaces, Faces};
 use equilux_assemble::gather::lights::Lights;
-use equilux_assemble::gather::piece::{Piece, centre};
+use equilux_assemble::gather::surface_piece::{SurfacePiece, centre};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::oven::prepare::{Division, Preparation, prepare};
@@ -75,8 +75,10 @@ pub fn averages(lit: &Lit, elements: &[Element], resolution: Resolution) -> Vec<
     let gather = Gather::new(&lit.placed, emission, radiosity, &Lights::default(), resolution);
     let mean = mean(&lit.outcome.irradiance);
     let projected: Vec<Projected> = elements.iter().map(|e| Projected::new(e, gather.faces(), lit)).collect();
-    let pieces: Vec<Piece> =
-        projected.iter().map(|p| Piece { corners: &p.corners, normal: p.normal, plane: &p.plane }).collect();
+    let pieces: Vec<SurfacePiece> = projected
+        .iter()
+        .map(|p| SurfacePiece { corners: &p.corners, normal: p.normal, plane: &p.plane })
+        .collect();
     let direct = gather.direct(&pieces, mean);
     let reflected = gather.reflected_over(&pieces, mean);
     direct.iter().zip(reflected).map(|(&d, r)| d + r).collect()
@@ -86,7 +88,7 @@ pub fn averages(lit: &Lit, elements: &[Element], resolution: Resolution) -> Vec<
 struct Projected<'a> {
     corners: Vec<DVec3>,
     normal: DVec3,
-    plane: Plane<'a>,
+    plane: CoplanarFaces<'a>,
 }
 
 impl<'a> Projected<'a> {

@@ -15,7 +15,7 @@ use equilux_assemble::gather::sky::Radiances;
 use equilux_assemble::lightmap::Lightmap;
 use equilux_assemble::lightmap::atlas::Atlas;
 use equilux_assemble::lightmap::light::TexelLight;
-use equilux_assemble::placed::Placed;
+use equilux_assemble::placed_parts::PlacedParts;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
@@ -28,7 +28,7 @@ use std::path::Path;
 #[derive(Debug)]
 pub struct Lit {
     /// The parts.
-    pub placed: Placed,
+    pub placed: PlacedParts,
     /// Reflectance and emission of all elements.
     pub optics: Optics,
     /// The light.
@@ -67,17 +67,17 @@ pub fn lightmap<'a>(scene: &'a Scene, atlas: &'a Atlas, lit: &Lit, sky: f64) -> 
 }
 
 /// The parts of a scene in their places, and what couples them; what is baked goes to the folder `cache`.
-pub fn coupled(scene: &Path, cache: &Path, wanted: &Preparation) -> (Placed, Vec<Coupled>) {
+pub fn coupled(scene: &Path, cache: &Path, wanted: &Preparation) -> (PlacedParts, Vec<Coupled>) {
     coupled_scene(&import_scene(scene).expect("a scene"), cache, wanted)
 }
 
-fn coupled_scene(scene: &Scene, cache: &Path, wanted: &Preparation) -> (Placed, Vec<Coupled>) {
+fn coupled_scene(scene: &Scene, cache: &Path, wanted: &Preparation) -> (PlacedParts, Vec<Coupled>) {
     let (store, monitor) = (Store::open(cache).expect("a cache"), Monitor::default());
     let prepared = prepare(scene, wanted).expect("elements");
     let (resolution, file) = (wanted.resolution, scene.file.as_path());
     let oven = Oven { store: &store, file, resolution, monitor: &monitor };
     let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked"));
-    let placed = Placed::new(parts.collect(), prepared.instances);
+    let placed = PlacedParts::new(parts.collect(), prepared.instances);
     let coupler = Coupler { placed: &placed, store: &store, file, resolution, monitor: &monitor };
     let couple = |k: usize| coupler.couple(k).expect("coupled");
     let coupled = (0..placed.instances.len()).map(couple).collect();

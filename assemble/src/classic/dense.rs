@@ -64,7 +64,7 @@ impl Dense {
         if monitor.stopped() { Err(Error::Stopped) } else { Ok(matrix) }
     }
 
-    /// Bytes of the matrix.
+    /// ClassicBytes of the matrix.
     pub fn bytes(&self) -> usize {
         self.values.len() * size_of::<f64>()
     }

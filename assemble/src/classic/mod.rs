@@ -14,7 +14,7 @@ use crate::gather::outside::lights;
 use crate::gather::points::{self, Place, PointLight};
 use crate::gather::sky::Sky;
 use crate::outputs::{POINTS, unusable};
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::report::light_notes::light_notes;
 use crate::report::process::{cpu_seconds, cpu_since, peak_rss};
 use dense::Dense;
@@ -71,9 +71,9 @@ pub struct ClassicReport {
     /// Number of elements.
     pub elements: usize,
     /// Where time went.
-    pub seconds: Seconds,
+    pub seconds: ClassicSeconds,
     /// Memory.
-    pub bytes: Bytes,
+    pub bytes: ClassicBytes,
     /// Elements that shot, one after the other, if it was progressive refinement.
     pub shots: Option<usize>,
     /// What a person should know of the scene's light.
@@ -82,9 +82,9 @@ pub struct ClassicReport {
     pub outputs: Vec<String>,
 }
 
-/// Seconds.
+/// ClassicSeconds.
 #[derive(Debug, Clone, Serialize)]
-pub struct Seconds {
+pub struct ClassicSeconds {
     /// Form factors, summed over threads.
     pub form_factors: f64,
     /// Wall time from the file to the light of all elements.
@@ -101,7 +101,7 @@ pub struct Seconds {
 
 /// Memory.
 #[derive(Debug, Clone, Serialize)]
-pub struct Bytes {
+pub struct ClassicBytes {
     /// The matrix.
     pub stored: usize,
     /// The most the process held until the light was known.
@@ -109,7 +109,7 @@ pub struct Bytes {
 }
 
 /// The light of all elements, and what it took.
-struct Solved {
+struct ClassicSolution {
     /// W/m².
     radiosity: Vec<Rgb>,
     /// From elements, W/m².
@@ -160,7 +160,7 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
         notes: light_notes(&scene, job.light_units, job.sky.as_ref()),
         scene: scene.name,
         elements: placed.world.elements.len(),
-        seconds: Seconds {
+        seconds: ClassicSeconds {
             form_factors: solved.form_factor_time.as_secs_f64(),
             solve,
             solve_cpu,
@@ -168,14 +168,19 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
             points_cpu: cpu_since(solve_cpu),
             total: start.elapsed().as_secs_f64(),
         },
-        bytes: Bytes { stored: solved.matrix_bytes, peak_rss: peak },
+        bytes: ClassicBytes { stored: solved.matrix_bytes, peak_rss: peak },
         shots: solved.shots,
         outputs,
     })
 }
 
 /// The light of all elements. Fails if the monitor was stopped.
-fn solve(job: &ClassicJob, placed: &Placed, optics: &Optics, monitor: &Monitor) -> Result<Solved> {
+fn solve(
+    job: &ClassicJob,
+    placed: &PlacedParts,
+    optics: &Optics,
+    monitor: &Monitor,
+) -> Result<ClassicSolution> {
     let matrix = match job.way {
         Way::Exact => Dense::exact(&placed.world, monitor),
         Way::Rays(count) => Dense::by_rays(&placed.world.elements, count as usize, monitor),
@@ -189,13 +194,13 @@ fn solve(job: &ClassicJob, placed: &Placed, optics: &Optics, monitor: &Monitor) 
     let radiosity = matrix.solve(optics);
     let irradiance = matrix.irradiance(&radiosity);
     let (form_factor_time, matrix_bytes) = (matrix.time, matrix.bytes());
-    Ok(Solved { irradiance, radiosity, form_factor_time, matrix_bytes, shots: None })
+    Ok(ClassicSolution { irradiance, radiosity, form_factor_time, matrix_bytes, shots: None })
 }
 
 /// The parts in their places, without any form factors.
-fn unbaked(prepared: Prepared) -> Placed {
+fn unbaked(prepared: Prepared) -> PlacedParts {
     let parts = prepared.parts.into_iter().map(without_light).collect();
-    Placed::new(parts, prepared.instances)
+    PlacedParts::new(parts, prepared.instances)
 }
 
 fn without_light(part: PreparedPart) -> Baked {

@@ -4,7 +4,7 @@
 //! F_ij = F_ji A_j / A_i: what i receives of shooter j comes from the row of j by reciprocity, as there. It holds for averages
 //! over elements and only nearly for centroids, so the light differs a little from that of the matrix.
 
-use super::Solved;
+use super::ClassicSolution;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, exact_rows};
 use equilux_bake::world::World;
@@ -19,13 +19,13 @@ const SHOTS: usize = 100;
 
 /// Shoot until the unshot power is less than the share `unshot` of what all elements emit. Fails if the monitor was
 /// stopped.
-pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> Result<Solved> {
+pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> Result<ClassicSolution> {
     let elements = &world.elements;
     let power = |left: &[Rgb]| -> f64 {
         left.iter().zip(elements).map(|(b, e)| e.area * b.iter().sum::<f64>()).sum()
     };
     let emitted = power(&optics.emission);
-    let mut light = Light {
+    let mut light = ShootingState {
         world,
         optics,
         radiosity: optics.emission.clone(),
@@ -41,12 +41,12 @@ pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> 
         shots += brightest.len();
         monitor.advance(brightest.len());
     }
-    let Light { radiosity, irradiance, time, .. } = light;
-    Ok(Solved { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
+    let ShootingState { radiosity, irradiance, time, .. } = light;
+    Ok(ClassicSolution { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
 }
 
 #[derive(Debug)]
-struct Light<'a> {
+struct ShootingState<'a> {
     world: &'a World,
     optics: &'a Optics,
     radiosity: Vec<Rgb>,
@@ -55,7 +55,7 @@ struct Light<'a> {
     time: Duration,
 }
 
-impl Light<'_> {
+impl ShootingState<'_> {
     /// These elements send all that they have not sent yet.
     fn shoot(&mut self, shooters: &[usize], monitor: &Monitor) -> Result<()> {
         let world = self.world;

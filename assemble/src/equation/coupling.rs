@@ -3,9 +3,9 @@
 //! For each instance k: F_kl for all other instances l, as one block whose columns count through all nodes of the
 //! scene; and F_kk as baked, or computed anew with the intruders in place. Everything in the scene blocks.
 
-use crate::equation::earlier::Older;
 use crate::equation::intruders::intruders;
-use crate::placed::Placed;
+use crate::equation::stale_block::StaleBlock;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::cached::{Made, Origin, cached, cached_or_revised, foreseen};
 use equilux_bake::oven::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
@@ -56,7 +56,7 @@ pub struct Corrected {
 
 /// Where the blocks of an instance would come from.
 #[derive(Debug)]
-pub struct Foreseen {
+pub struct ForeseenBlocks {
     /// The instances that stand inside.
     pub intruders: Vec<usize>,
     /// The origin of the self block with what stands inside, if anything does.
@@ -84,7 +84,7 @@ const TWINS: usize = 8;
 #[derive(Debug)]
 pub struct Coupler<'a> {
     /// The scene.
-    pub placed: &'a Placed,
+    pub placed: &'a PlacedParts,
     /// The cache.
     pub store: &'a Store,
     /// The scene's file, for remembering what was coupled last.
@@ -123,20 +123,20 @@ impl Coupler<'_> {
         let others: Vec<usize> = (0..self.placed.instances.len()).filter(|&l| l != instance).collect();
         let request =
             Request::new(&self.placed.world, Audience::Instance(instance), &others, self.resolution);
-        let Block { rows: coupling, origin, computed, computed_by_row, time, .. } =
+        let MadeBlock { rows: coupling, origin, computed, computed_by_row, time, .. } =
             self.block((instance, COUPLING), request, Some(own), None)?;
         Ok(Coupled { coupling, origin, computed, computed_by_row, corrected, time })
     }
 
     /// Where the blocks of an instance would come from. Computes none of them.
-    pub fn foresee(&self, instance: usize) -> Foreseen {
+    pub fn foresee(&self, instance: usize) -> ForeseenBlocks {
         let origin = |what: &str| {
             let manifest = self.manifest(instance, what);
             foreseen::<Rows>(self.store, &self.name(instance, what), &manifest)
         };
         let intruders = self.intruders(instance);
         let corrected = (!intruders.is_empty()).then(|| origin(CORRECTED));
-        Foreseen { intruders, corrected, coupling: origin(COUPLING) }
+        ForeseenBlocks { intruders, corrected, coupling: origin(COUPLING) }
     }
 
     /// The instances with geometry inside the hull of this one.
@@ -151,8 +151,8 @@ impl Coupler<'_> {
         self.monitor.expect(self.placed.world.elements_of(instance).len() as f64);
         // The part alone is a scene too: what stands inside appeared in it.
         let part = &self.placed.part_of(instance).part;
-        let alone = Older::alone(self.placed, instance, &intruders);
-        let Block { rows: self_block, origin, computed, computed_by_row, key, time } =
+        let alone = StaleBlock::alone(self.placed, instance, &intruders);
+        let MadeBlock { rows: self_block, origin, computed, computed_by_row, key, time } =
             self.block((instance, CORRECTED), request, None, Some(alone))?;
         if origin.is_reused() {
             self.monitor.spare(self.placed.world.elements_of(instance).len() as f64);
@@ -176,8 +176,8 @@ impl Coupler<'_> {
         (instance, what): (usize, &str),
         request: Request,
         own: Option<&Rows>,
-        otherwise: Option<Older>,
-    ) -> Result<Block> {
+        otherwise: Option<StaleBlock>,
+    ) -> Result<MadeBlock> {
         let manifest = self.manifest(instance, what);
         let name = self.name(instance, what);
         let (mut time, mut computed, mut computed_by_row) = (Duration::ZERO, 0, vec![]);
@@ -189,11 +189,11 @@ impl Coupler<'_> {
                 receivers as f64,
             );
             let last = self.store.last_manifest(&name).and_then(|last| {
-                Older::last(self.placed, self.store, instance, &last, &manifest, request.columns.clone())
+                StaleBlock::last(self.placed, self.store, instance, &last, &manifest, request.columns.clone())
             });
             let twin = || self.twin(instance, what, &manifest, request.columns.clone());
             let older = last.or_else(twin).or(otherwise);
-            let revision = older.as_ref().map(Older::revision);
+            let revision = older.as_ref().map(StaleBlock::revision);
             // A row that is full already sees nothing of other parts: nothing is searched for it.
             let sums = |own: &Rows| (0..own.receivers()).map(|i| own.row_sum(i)).collect::<Vec<_>>();
             let already = own.map(sums);
@@ -205,7 +205,7 @@ impl Coupler<'_> {
         });
         let (rows, origin) = found?;
         let key = self.store.target(&manifest.key());
-        Ok(Block { rows, origin, key, computed, computed_by_row, time })
+        Ok(MadeBlock { rows, origin, key, computed, computed_by_row, time })
     }
 
     /// The block of another instance of the same part that stands among much the same, as if that one were here: what one
@@ -216,7 +216,7 @@ impl Coupler<'_> {
         what: &str,
         wanted: &Manifest,
         columns: Range<usize>,
-    ) -> Option<Older<'_>> {
+    ) -> Option<StaleBlock<'_>> {
         let instances = &self.placed.instances;
         let part = instances[instance].part;
         let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(TWINS);
@@ -226,7 +226,7 @@ impl Coupler<'_> {
         let common = |l: &usize| seen_by(*l).filter(|seen| here.contains(seen)).count();
         let twin = before.max_by_key(common)?;
         let manifest = self.manifest(twin, what);
-        Older::last(self.placed, self.store, instance, &manifest, wanted, columns)
+        StaleBlock::last(self.placed, self.store, instance, &manifest, wanted, columns)
     }
 
     /// The key under which the last block of this name lies.
@@ -259,7 +259,7 @@ impl Coupler<'_> {
 }
 
 /// A block and how it came about.
-struct Block {
+struct MadeBlock {
     rows: Rows,
     origin: Origin,
     /// The key under which it lies.

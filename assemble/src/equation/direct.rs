@@ -4,10 +4,10 @@
 
 use crate::equation::coupling::Coupler;
 use crate::gather::Gather;
-use crate::gather::faces::Plane;
+use crate::gather::faces::CoplanarFaces;
 use crate::gather::lights::Lights;
-use crate::gather::piece::Piece;
-use crate::placed::Placed;
+use crate::gather::surface_piece::SurfacePiece;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::apply;
 use equilux_bake::oven::cached::cached;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
@@ -35,8 +35,8 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
     if lights.is_empty() {
         return Ok(Direct { irradiance: placed.split(&dark), computed: 0, unlit: vec![] });
     }
-    let Arriving { irradiance, unlit } = if lights.lamps.is_empty() && lights.suns.is_empty() {
-        Arriving { irradiance: dark, unlit: vec![] }
+    let LampLight { irradiance, unlit } = if lights.lamps.is_empty() && lights.suns.is_empty() {
+        LampLight { irradiance: dark, unlit: vec![] }
     } else {
         coupler.monitor.begin("light of lamps", 0, 0.0);
         of_lamps(placed, lights)
@@ -60,14 +60,14 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
 }
 
 /// What arrives of lamps and suns.
-struct Arriving {
+struct LampLight {
     /// W/m², one an element of the world.
     irradiance: Vec<Rgb>,
     /// The names of those of which nothing arrives.
     unlit: Vec<String>,
 }
 
-impl Arriving {
+impl LampLight {
     /// Adds the irradiance of these elements from a lamp that could send them at most `power`, W.
     fn add(&mut self, name: &str, power: Rgb, elements: &[Element], irradiance: &[Rgb]) {
         let mut arrived = Rgb::BLACK;
@@ -83,18 +83,18 @@ impl Arriving {
 }
 
 /// The light of lamps and suns, averaged over each element.
-fn of_lamps(placed: &Placed, lights: &Lights) -> Arriving {
+fn of_lamps(placed: &PlacedParts, lights: &Lights) -> LampLight {
     let elements = &placed.world.elements;
     let dark = vec![Rgb::BLACK; elements.len()];
-    let mut arriving = Arriving { irradiance: dark.clone(), unlit: vec![] };
+    let mut arriving = LampLight { irradiance: dark.clone(), unlit: vec![] };
     let gather = |lights: &Lights| Gather::new(placed, &dark, &dark, lights, EXACT);
     let none = gather(&Lights::default());
-    let planes: Vec<Plane> = elements.iter().map(|e| none.faces().plane_of(e.face)).collect();
+    let planes: Vec<CoplanarFaces> = elements.iter().map(|e| none.faces().plane_of(e.face)).collect();
     let piece = |(e, plane)| {
         let e: &Element = e;
-        Piece { corners: e.corners.as_slice(), normal: e.normal, plane }
+        SurfacePiece { corners: e.corners.as_slice(), normal: e.normal, plane }
     };
-    let pieces: Vec<Piece> = elements.iter().zip(&planes).map(piece).collect();
+    let pieces: Vec<SurfacePiece> = elements.iter().zip(&planes).map(piece).collect();
     for lamp in &lights.lamps {
         arriving.add(&lamp.name, lamp.power, elements, &lamp.irradiance(none.world(), &pieces));
     }

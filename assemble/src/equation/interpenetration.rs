@@ -5,7 +5,7 @@
 //! size, so that what only touches is not; and if most of what it sees from there are the backs of that solid's part: what
 //! stands in a room inside a building's shell is inside that shell too, but sees the room.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::geometry::solids::{Solid, solids};
 use equilux_bake::rays::RayIndex;
@@ -21,7 +21,7 @@ const DEPTH: f64 = 1e-2;
 const NAMED: usize = 3;
 
 /// A sentence for each instance with elements inside a solid, of the first few such pairs.
-pub fn notes(placed: &Placed) -> Vec<String> {
+pub fn notes(placed: &PlacedParts) -> Vec<String> {
     let parts: Vec<&Geometry> = placed.parts.iter().map(|part| &part.part.geometry).collect();
     sentences(&elements_inside(&placed.world, &placed.instances, &parts), &placed.instances)
 }

@@ -3,12 +3,12 @@
 
 pub mod coupling;
 pub mod direct;
-mod earlier;
 pub mod environment;
 pub mod interpenetration;
 pub mod intruders;
 pub mod observer;
 pub mod optics;
+mod stale_block;
 
 use crate::equation::coupling::{Coupled, Coupler};
 use crate::equation::direct::{Direct, direct, driven};
@@ -20,7 +20,7 @@ use crate::exchange::system::InstanceSystem;
 use crate::gather::Gather;
 use crate::gather::lights::Lights;
 use crate::gather::outside::lights;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::LocalSystem;
 use equilux_bake::oven::prepare::Prepared;
 use equilux_bake::oven::{Baked, Oven};
@@ -31,7 +31,7 @@ use equilux_formats::{Optics, Result, Rgb, Scene};
 #[derive(Debug)]
 pub struct Equation {
     /// The parts in their places.
-    pub placed: Placed,
+    pub placed: PlacedParts,
     /// What couples them, one entry an instance.
     pub coupled: Vec<Coupled>,
     /// Optics of all elements.
@@ -88,7 +88,7 @@ impl Equation {
 
 /// The equation of each instance, with these optics.
 pub fn systems<'a>(
-    placed: &'a Placed,
+    placed: &'a PlacedParts,
     coupled: &'a [Coupled],
     optics: &'a [Optics],
 ) -> Vec<InstanceSystem<'a>> {
@@ -126,7 +126,7 @@ fn expected_rows(prepared: &Prepared, environment: &Environment) -> f64 {
     (parts + elements + sky) as f64 + ROWS_PER_ELEMENT * elements as f64
 }
 
-fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<Placed> {
+fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<PlacedParts> {
     oven.read_ahead(&prepared.parts);
     let mut parts: Vec<Baked> = Vec::new();
     for (number, part) in prepared.parts.iter().enumerate() {
@@ -134,10 +134,10 @@ fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Resul
         observer.baked(number, &baked);
         parts.push(baked);
     }
-    Ok(Placed::new(parts, prepared.instances))
+    Ok(PlacedParts::new(parts, prepared.instances))
 }
 
-fn coupler<'a>(oven: &'a Oven, placed: &'a Placed) -> Coupler<'a> {
+fn coupler<'a>(oven: &'a Oven, placed: &'a PlacedParts) -> Coupler<'a> {
     let &Oven { store, file, resolution, monitor } = oven;
     Coupler { placed, store, file, resolution, monitor }
 }

@@ -3,7 +3,7 @@
 use crate::equation::coupling::Coupled;
 use crate::exchange::listener::{Listener, Unobserved};
 use crate::exchange::outcome::Outcome;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::oven::Baked;
 use equilux_bake::oven::prepare::Prepared;
 use equilux_formats::{Camera, Optics, Rgb, Scene};
@@ -15,11 +15,11 @@ pub trait Observer: Listener {
     /// The form factors and the own light of a part, by its number, are known.
     fn baked(&self, _number: usize, _part: &Baked) {}
     /// All parts are in their places.
-    fn placed(&self, _placed: &Placed, _cameras: &[Camera]) {}
+    fn placed(&self, _placed: &PlacedParts, _cameras: &[Camera]) {}
     /// The coupling of an instance is known.
     fn coupled(&self, _instance: usize, _coupled: &Coupled) {}
     /// All form factors are known, and the exchange begins. `optics` are those of all elements.
-    fn coupled_all(&self, _placed: &Placed, _coupled: &[Coupled], _optics: &Optics) {}
+    fn coupled_all(&self, _placed: &PlacedParts, _coupled: &[Coupled], _optics: &Optics) {}
     /// The exchange is over; outputs follow. `irradiance` of all elements, W/m², includes that of lamps, suns and sky.
     fn settled(&self, _outcome: &Outcome, _irradiance: &[Rgb]) {}
 }

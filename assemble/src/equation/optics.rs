@@ -1,10 +1,10 @@
 //! Optics of all elements of a scene.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_formats::Optics;
 
 /// Optics of all elements, instance after instance.
-pub fn whole_optics(placed: &Placed) -> Optics {
+pub fn whole_optics(placed: &PlacedParts) -> Optics {
     joined(&(0..placed.instances.len()).map(|k| placed.optics_of(k)).collect::<Vec<_>>())
 }
 

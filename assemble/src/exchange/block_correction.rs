@@ -23,7 +23,7 @@ pub struct BlockCorrection<'a> {
 }
 
 /// What a member found in its turn.
-struct Solved {
+struct MemberCorrection {
     correction: Vec<Rgb>,
     /// What the local solver left.
     left: Vec<Rgb>,
@@ -33,7 +33,7 @@ struct Solved {
 
 /// The light of a sweep on its way.
 #[derive(Debug)]
-struct Light {
+struct NewestCorrections {
     /// The newest corrections, of all senders of the scene.
     all: Vec<Rgb>,
     /// Which members have any.
@@ -56,8 +56,10 @@ impl<'a> BlockCorrection<'a> {
     ) -> (Vec<Rgb>, Vec<Rgb>) {
         let group = self.group;
         let count = group.members.len();
-        let mut light =
-            Light { all: vec![Rgb::BLACK; group.scene_senders()], lit: vec![start.is_some(); count] };
+        let mut light = NewestCorrections {
+            all: vec![Rgb::BLACK; group.scene_senders()],
+            lit: vec![start.is_some(); count],
+        };
         let mut correction = start.unwrap_or_else(|| vec![Rgb::BLACK; missing.len()]);
         for member in (0..count).filter(|&m| light.lit[m]) {
             group.send(member, &correction[group.elements_of(member)], &mut light.all);
@@ -69,7 +71,7 @@ impl<'a> BlockCorrection<'a> {
                 heard[member] = self.hear(member, &light, times);
             }
             let solve = |&m: &usize| self.solve(m, &missing[group.elements_of(m)], &heard[m]);
-            let solved: Vec<Solved> = now.par_iter().map(solve).collect();
+            let solved: Vec<MemberCorrection> = now.par_iter().map(solve).collect();
             for (&member, solved) in now.iter().zip(solved) {
                 times.solve[group.members[member]] += solved.time;
                 self.idle += usize::from(solved.idle);
@@ -94,7 +96,7 @@ impl<'a> BlockCorrection<'a> {
     }
 
     /// Irradiance from the other members; nothing is gathered in the dark.
-    fn hear(&self, member: usize, light: &Light, times: &mut StepTimes) -> Vec<Rgb> {
+    fn hear(&self, member: usize, light: &NewestCorrections, times: &mut StepTimes) -> Vec<Rgb> {
         if !self.group.sees[member].iter().any(|&sender| light.lit[sender]) {
             return vec![Rgb::BLACK; self.group.elements_of(member).len()];
         }
@@ -109,7 +111,7 @@ impl<'a> BlockCorrection<'a> {
         self.group.sees[member].iter().any(|&sender| self.turns[sender] >= self.turns[member])
     }
 
-    fn solve(&self, member: usize, missing: &[Rgb], heard: &[Rgb]) -> Solved {
+    fn solve(&self, member: usize, missing: &[Rgb], heard: &[Rgb]) -> MemberCorrection {
         let start = Instant::now();
         let system = self.group.system(member);
         let rows = missing.iter().zip(&system.optics.reflectance).zip(heard);
@@ -121,6 +123,6 @@ impl<'a> BlockCorrection<'a> {
             Some(share) => system.local.solve_roughly(&sources, share),
             None => (system.local.solve(&sources, &dark), dark),
         };
-        Solved { correction, left, idle, time: start.elapsed() }
+        MemberCorrection { correction, left, idle, time: start.elapsed() }
     }
 }

@@ -67,7 +67,7 @@ pub struct GroupOutcome {
 }
 
 /// The light of a group on its way to equilibrium.
-struct State {
+struct SolverState {
     radiosity: Vec<Rgb>,
     /// F B, as of when it was last computed anew.
     irradiance: Vec<Rgb>,
@@ -168,17 +168,17 @@ impl<'a> GroupSolver<'a> {
         }
     }
 
-    fn begin(&self, start: Option<Vec<Rgb>>) -> State {
+    fn begin(&self, start: Option<Vec<Rgb>>) -> SolverState {
         let dark = || vec![Rgb::BLACK; self.group.elements()];
         let irradiance = start.as_ref().map_or_else(dark, |start| self.group.irradiance(start));
         let radiosity = start.unwrap_or_else(dark);
         let missing = self.group.residual(&radiosity, &irradiance);
         let krylov = self.krylov.then(|| (radiosity.clone(), Space::new(&missing)));
-        State { radiosity, irradiance, missing, krylov }
+        SolverState { radiosity, irradiance, missing, krylov }
     }
 
     /// One round: a correction, and what is still missing then.
-    fn advance(&mut self, state: &mut State, times: &mut StepTimes) {
+    fn advance(&mut self, state: &mut SolverState, times: &mut StepTimes) {
         let Some((base, space)) = &mut state.krylov else {
             let (z, az) = self.sweep.correct(&state.missing, None, times);
             state.radiosity = sum(&state.radiosity, &z);
@@ -196,13 +196,13 @@ impl<'a> GroupSolver<'a> {
     }
 
     /// Compute from the radiosity alone what is missing.
-    fn refresh(&self, state: &mut State) {
+    fn refresh(&self, state: &mut SolverState) {
         state.irradiance = self.group.irradiance(&state.radiosity);
         state.missing = self.group.residual(&state.radiosity, &state.irradiance);
         state.krylov = self.krylov.then(|| (state.radiosity.clone(), Space::new(&state.missing)));
     }
 
-    fn estimate(&self, state: &State, times: &mut StepTimes) -> ErrorEstimate {
+    fn estimate(&self, state: &SolverState, times: &mut StepTimes) -> ErrorEstimate {
         timed(&mut times.overhead.judging, || ErrorEstimate {
             residual: largest(&state.missing),
             error_bound: self.margin.bound(&state.missing, &state.radiosity),
@@ -211,13 +211,13 @@ impl<'a> GroupSolver<'a> {
         })
     }
 
-    fn sharp_bound(&self, state: &State, times: &mut StepTimes) -> Rgb {
+    fn sharp_bound(&self, state: &SolverState, times: &mut StepTimes) -> Rgb {
         let bound = || self.margin.sharp_bound(self.group, &state.missing, &state.radiosity);
         timed(&mut times.overhead.proving, bound)
     }
 }
 
-impl State {
+impl SolverState {
     fn is_full(&self) -> bool {
         self.krylov.as_ref().is_some_and(|(_, space)| space.is_full())
     }

@@ -2,8 +2,8 @@
 //! finer until the average stays, that of lamps by clipping.
 
 use crate::gather::Gather;
-use crate::gather::piece::{Piece, cells, centre};
 use crate::gather::receiver::receiver;
+use crate::gather::surface_piece::{SurfacePiece, cells, centre};
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
@@ -20,7 +20,7 @@ const STAYS: f64 = 0.01;
 
 impl Gather {
     /// The average direct irradiance of pieces, W/m². Light far below `unit` (W/m²) need not be as exact.
-    pub fn direct(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {
+    pub fn direct(&self, pieces: &[SurfacePiece], unit: Rgb) -> Vec<Rgb> {
         let mut found = self.glow_over(pieces, unit);
         for lamp in self.lamps() {
             let arriving = lamp.irradiance(self.world(), pieces);
@@ -31,7 +31,7 @@ impl Gather {
 
     /// The average reflected irradiance of pieces, W/m²: from their middles where nothing stands near, else from grids as
     /// direct light.
-    pub fn reflected_over(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {
+    pub fn reflected_over(&self, pieces: &[SurfacePiece], unit: Rgb) -> Vec<Rgb> {
         let reflected = |points: &[Element]| self.reflected(points);
         let all: Vec<usize> = (0..pieces.len()).collect();
         let mut found = averages(pieces, &all, 1, &reflected);
@@ -41,12 +41,12 @@ impl Gather {
     }
 
     /// Whether anything stands before a piece at less than its own size.
-    fn stands_near(&self, piece: &Piece) -> bool {
+    fn stands_near(&self, piece: &SurfacePiece) -> bool {
         let bounds = Aabb::around(piece.corners);
         self.anything_before(bounds.grown(bounds.diagonal() / 2.0), piece.corners[0], piece.normal)
     }
 
-    fn glow_over(&self, pieces: &[Piece], unit: Rgb) -> Vec<Rgb> {
+    fn glow_over(&self, pieces: &[SurfacePiece], unit: Rgb) -> Vec<Rgb> {
         let glow = |points: &[Element]| self.glow(points);
         let all: Vec<usize> = (0..pieces.len()).collect();
         let mut found = averages(pieces, &all, GRIDS[0], &glow);
@@ -57,7 +57,7 @@ impl Gather {
 
 /// Take finer and finer grids for those of `open` whose average does not stay.
 fn refine(
-    pieces: &[Piece],
+    pieces: &[SurfacePiece],
     found: &mut [Rgb],
     mut open: Vec<usize>,
     grids: &[usize],
@@ -80,7 +80,7 @@ fn refine(
 
 /// The averages over grids of some pieces.
 fn averages(
-    pieces: &[Piece],
+    pieces: &[SurfacePiece],
     which: &[usize],
     grid: usize,
     light: &impl Fn(&[Element]) -> Vec<Rgb>,

@@ -1,7 +1,7 @@
 //! The cone of a spot: how much of a spot's intensity goes in a direction, and into a convex polygon. KHR_lights_punctual:
 //! I(θ)/I = clamp(cos θ · s + o, 0, 1)², s = 1/(cos inner − cos outer), o = −s cos outer.
 
-use crate::gather::piece::{cells, centre};
+use crate::gather::surface_piece::{cells, centre};
 use equilux_bake::geometry::polygon::{Polygon, Side, clip};
 use equilux_bake::geometry::solid_angle::solid_angle;
 use glam::DVec3;

@@ -2,8 +2,8 @@
 //! luminance of the irradiance that comes from there.
 
 use crate::gather::Gather;
-use crate::gather::piece::{Piece, centre};
 use crate::gather::receiver::receiver;
+use crate::gather::surface_piece::{SurfacePiece, centre};
 use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
@@ -11,7 +11,7 @@ use glam::DVec3;
 impl Gather {
     /// Σ_j Y_j ω_j / Σ_j Y_j at the middle of each piece, with the luminance Y_j of F_ij B_j and the direction ω_j to the
     /// middle of sender j; zero where there is no light.
-    pub fn directions(&self, pieces: &[Piece]) -> Vec<DVec3> {
+    pub fn directions(&self, pieces: &[SurfacePiece]) -> Vec<DVec3> {
         let points: Vec<Option<Element>> = pieces.iter().map(middle).collect();
         let known: Vec<Element> = points.iter().flatten().copied().collect();
         let mut sums = vec![(DVec3::ZERO, 0.0); known.len()];
@@ -59,7 +59,7 @@ fn add(sum: &mut (DVec3, f64), weight: f64, to: DVec3) {
     sum.1 += weight;
 }
 
-fn middle(piece: &Piece) -> Option<Element> {
+fn middle(piece: &SurfacePiece) -> Option<Element> {
     let (middle, _) = centre(piece.corners, piece.normal);
     Some(receiver(middle, piece.normal, piece.plane.face_at(middle)?))
 }

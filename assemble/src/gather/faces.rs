@@ -14,7 +14,7 @@ pub struct Faces {
 
 /// The faces that lie in one plane.
 #[derive(Debug)]
-pub struct Plane<'a> {
+pub struct CoplanarFaces<'a> {
     faces: Vec<(FaceId, &'a Face)>,
 }
 
@@ -33,13 +33,13 @@ impl Faces {
     }
 
     /// The plane of one face, with that face alone.
-    pub fn plane_of(&self, face: FaceId) -> Plane<'_> {
-        Plane { faces: vec![(face, &self.faces[face.index()])] }
+    pub fn plane_of(&self, face: FaceId) -> CoplanarFaces<'_> {
+        CoplanarFaces { faces: vec![(face, &self.faces[face.index()])] }
     }
 
     /// The faces in the plane through `point` with this normal or its opposite; the nearest face alone where corners that are
     /// rounded leave none: a small face far from the origin is turned away from the large one that it was joined to.
-    pub fn in_plane(&self, point: DVec3, normal: DVec3) -> Plane<'_> {
+    pub fn in_plane(&self, point: DVec3, normal: DVec3) -> CoplanarFaces<'_> {
         let lies = |face: &Face| {
             face.normal.cross(normal).length() <= NEAR
                 && (face.corners[0] - point).dot(normal).abs() <= NEAR * self.size
@@ -47,16 +47,16 @@ impl Faces {
         let all = || self.faces.iter().enumerate().map(|(n, face)| (FaceId::from_index(n), face));
         let faces: Vec<_> = all().filter(|(_, face)| lies(face)).collect();
         if !faces.is_empty() {
-            return Plane { faces };
+            return CoplanarFaces { faces };
         }
         let distance = |face: &Face| face.normal.dot(point - face.corners[0]).abs().max(outside(face, point));
         let alike = all().filter(|(_, face)| face.normal.dot(normal).abs() > ALIKE);
         let nearest = alike.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
-        Plane { faces: nearest.into_iter().collect() }
+        CoplanarFaces { faces: nearest.into_iter().collect() }
     }
 }
 
-impl Plane<'_> {
+impl CoplanarFaces<'_> {
     /// The face that holds the point, or whose edge is nearest to it; none if there is no face in the plane.
     pub fn face_at(&self, point: DVec3) -> Option<FaceId> {
         let nearest =

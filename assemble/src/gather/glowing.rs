@@ -1,7 +1,7 @@
 //! Surfaces that shine by themselves as few large polygons. In go the placed parts and the emission of their elements; out
 //! come senders that cover the elements that emit, none of them holding two kinds of light.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::elements::clusters::hierarchy;
 use equilux_formats::{ClusterTree, Corners, Element, Rgb};
 
@@ -16,7 +16,7 @@ pub struct Surfaces {
 }
 
 /// All that emits.
-pub fn surfaces(placed: &Placed, emission: &[Rgb]) -> Surfaces {
+pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> Surfaces {
     let mut found: Vec<(Element, Rgb)> = Vec::new();
     for k in 0..placed.instances.len() {
         let clusters = &placed.part_of(k).part.geometry.clusters;
@@ -52,7 +52,7 @@ fn uniform(clusters: &ClusterTree, emission: &[Rgb], node: usize) -> Option<Rgb>
 }
 
 /// A node of an instance as an element, if it is a polygon of three or four corners.
-fn polygon(placed: &Placed, instance: usize, node: usize) -> Option<Element> {
+fn polygon(placed: &PlacedParts, instance: usize, node: usize) -> Option<Element> {
     let world = &placed.world;
     let number = world.nodes_of(instance).start + node;
     if let Some(element) = world.element_of(number) {

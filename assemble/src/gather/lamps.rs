@@ -3,8 +3,8 @@
 //! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
 use crate::gather::cone::Cone;
-use crate::gather::piece::{Piece, centre};
 use crate::gather::receiver::receiver;
+use crate::gather::surface_piece::{SurfacePiece, centre};
 use equilux_bake::form_factor::plain::hidden_pyramid;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::geometry::outline::Plane;
@@ -56,7 +56,7 @@ impl Lamp {
     }
 
     /// The average irradiance of pieces, W/m².
-    pub fn irradiance(&self, world: &World, pieces: &[Piece]) -> Vec<Rgb> {
+    pub fn irradiance(&self, world: &World, pieces: &[SurfacePiece]) -> Vec<Rgb> {
         pieces.par_iter().map(|piece| self.over(world, piece)).collect()
     }
 
@@ -77,7 +77,7 @@ impl Lamp {
         self.intensity * share
     }
 
-    fn over(&self, world: &World, piece: &Piece) -> Rgb {
+    fn over(&self, world: &World, piece: &SurfacePiece) -> Rgb {
         let dark = Rgb::BLACK;
         if piece.normal.dot(self.position - piece.corners[0]) <= 0.0 {
             return dark;

@@ -17,13 +17,13 @@ mod glowing;
 pub mod lamps;
 pub mod lights;
 pub mod outside;
-pub mod piece;
 pub mod points;
 pub mod receiver;
 pub mod sampling;
 pub mod sky;
+pub mod surface_piece;
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::apply;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
@@ -61,7 +61,7 @@ impl Gather {
     /// The placed scene with these lights. `emission` and `radiosity` are of all elements, W/m²; of a scene without
     /// equilibrium as yet both are zero.
     pub fn new(
-        placed: &Placed,
+        placed: &PlacedParts,
         emission: &[Rgb],
         radiosity: &[Rgb],
         lights: &Lights,

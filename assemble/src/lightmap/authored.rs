@@ -11,7 +11,7 @@ use super::grid::{Grid, MARGIN};
 use super::overlap::any_overlap;
 use super::pack::Spot;
 use super::patch::Map;
-use super::side::{Side, sides};
+use super::side::{SurfaceSide, sides};
 use super::texels::Texels;
 use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_formats::{Corners, Part};
@@ -30,7 +30,7 @@ const SPARSE: f64 = 16.0;
 
 /// A part's charts in its author's layout.
 #[derive(Debug, Clone)]
-pub struct Authored {
+pub struct AuthoredLayout {
     /// The charts, fronts first.
     pub charts: Vec<Chart>,
     /// For each chart the maps of its planes to the layout, whose width and height are 1.
@@ -52,7 +52,7 @@ pub struct Sheets {
     pub sheets: Vec<[u32; 2]>,
 }
 
-impl Authored {
+impl AuthoredLayout {
     /// The layout of `part`, nothing if it has none, or why it cannot be kept.
     pub fn of(part: &Part) -> Option<Result<Self, &'static str>> {
         part.surfaces.iter().any(|surface| surface.lightmap.is_some()).then(|| Self::read(part))
@@ -91,7 +91,7 @@ impl Authored {
     }
 
     /// Add a chart of these sides.
-    fn add(&mut self, sides: Vec<Side>) -> Option<()> {
+    fn add(&mut self, sides: Vec<SurfaceSide>) -> Option<()> {
         let (mut maps, mut planes): (Vec<Map>, Vec<usize>) = (vec![], vec![]);
         for side in &sides {
             let (corners, places) = (side.corners.as_slice(), places(side)?);
@@ -181,7 +181,7 @@ impl Authored {
     }
 }
 
-fn places(side: &Side) -> Option<&[DVec2]> {
+fn places(side: &SurfaceSide) -> Option<&[DVec2]> {
     Some(&side.lightmap.as_ref()?[..side.corners.as_slice().len()])
 }
 
@@ -197,7 +197,7 @@ fn flat(places: &[DVec2]) -> Corners {
 }
 
 /// Sides in groups that touch each other both on the part and in the layout, and are of one material.
-fn groups(sides: &[Side]) -> Vec<Vec<usize>> {
+fn groups(sides: &[SurfaceSide]) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(sides.len());
     for contact in opposed_contacts(sides) {
         let [a, b] = contact.sides;
@@ -213,7 +213,7 @@ fn groups(sides: &[Side]) -> Vec<Vec<usize>> {
 }
 
 /// Where a point on a side's outline lies in the layout.
-fn place_on(side: &Side, point: DVec3) -> Option<DVec2> {
+fn place_on(side: &SurfaceSide, point: DVec3) -> Option<DVec2> {
     let (corners, places) = (side.corners.as_slice(), places(side)?);
     let own = [0, 1, corners.len() - 1];
     let map = Map::through(own.map(|i| corners[i]), own.map(|i| places[i]), side.normal)?;

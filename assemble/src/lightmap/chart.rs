@@ -7,7 +7,7 @@
 
 use super::contacts::{SMOOTH, smooth_contacts};
 use super::overlap::any_overlap;
-use super::side::{Side, sides};
+use super::side::{SurfaceSide, sides};
 use equilux_bake::geometry::planes;
 use equilux_formats::{Face, MaterialId, Part};
 use glam::DVec3;
@@ -20,7 +20,7 @@ pub struct Chart {
     /// The material of all.
     pub material: MaterialId,
     /// The sides.
-    pub sides: Vec<Side>,
+    pub sides: Vec<SurfaceSide>,
     /// Which of them lie in one plane: a number for each side, counted from 0 without gaps.
     pub planes: Vec<usize>,
 }
@@ -32,7 +32,7 @@ impl Chart {
     }
 
     /// The largest of the sides in a plane: its plane is known best.
-    pub fn largest_in(&self, plane: usize) -> &Side {
+    pub fn largest_in(&self, plane: usize) -> &SurfaceSide {
         let sides = self.sides.iter().zip(&self.planes).filter(|(_, of)| **of == plane);
         sides.map(|(side, _)| side).max_by(|a, b| a.area.total_cmp(&b.area)).expect("a plane has a side")
     }
@@ -54,13 +54,13 @@ pub fn charts(part: &Part) -> Vec<Chart> {
 }
 
 struct Growth {
-    sides: Vec<Side>,
+    sides: Vec<SurfaceSide>,
     plane: Vec<u32>,
     neighbours: Vec<Vec<usize>>,
 }
 
 impl Growth {
-    fn new(sides: Vec<Side>) -> Self {
+    fn new(sides: Vec<SurfaceSide>) -> Self {
         let mut neighbours = vec![Vec::new(); sides.len()];
         for contact in smooth_contacts(&sides) {
             let [a, b] = contact.sides;

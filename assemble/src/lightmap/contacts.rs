@@ -3,7 +3,7 @@
 //! In go sides in one system of coordinates; out come pairs of them with the piece of edge they share. Edges need not
 //! have equal ends: a long one may meet several short ones.
 
-use super::side::Side;
+use super::side::SurfaceSide;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::geometry::tolerance::FLATNESS;
 use glam::DVec3;
@@ -24,13 +24,13 @@ pub struct Contact {
 }
 
 /// The contacts of neighbours of one orientation, however they are bent.
-pub fn opposed_contacts(sides: &[Side]) -> impl Iterator<Item = Contact> {
+pub fn opposed_contacts(sides: &[SurfaceSide]) -> impl Iterator<Item = Contact> {
     contacts(sides, tolerance(sides)).into_iter().filter(|contact| contact.opposed)
 }
 
 /// The contacts across which light changes smoothly: the sides face the same way to within [`SMOOTH`], and no third
 /// side stands on the edge and parts the light on them.
-pub fn smooth_contacts(sides: &[Side]) -> Vec<Contact> {
+pub fn smooth_contacts(sides: &[SurfaceSide]) -> Vec<Contact> {
     let tolerance = tolerance(sides);
     let all = contacts(sides, tolerance);
     let mut of_side: Vec<Vec<&Contact>> = vec![Vec::new(); sides.len()];
@@ -48,13 +48,13 @@ pub fn smooth_contacts(sides: &[Side]) -> Vec<Contact> {
 }
 
 /// What lengths may be off by: the coordinates' rounding, a few times over.
-fn tolerance(sides: &[Side]) -> f64 {
+fn tolerance(sides: &[SurfaceSide]) -> f64 {
     let corners = sides.iter().flat_map(|side| side.corners.as_slice());
     4.0 * FLATNESS * corners.map(|p| p.abs().max_element()).fold(0.0, f64::max)
 }
 
 /// Whether the third side that `other` leads to stands on `contact` and rises before its sides, towards `front`.
-fn parts(contact: &Contact, other: &Contact, sides: &[Side], front: DVec3, tolerance: f64) -> bool {
+fn parts(contact: &Contact, other: &Contact, sides: &[SurfaceSide], front: DVec3, tolerance: f64) -> bool {
     let Some(third) = other.sides.into_iter().find(|side| !contact.sides.contains(side)) else {
         return false;
     };
@@ -71,7 +71,7 @@ struct Edge {
 }
 
 /// All contacts longer than the tolerance. A sweep along the longest axis, in an order that does not depend on threads.
-fn contacts(sides: &[Side], tolerance: f64) -> Vec<Contact> {
+fn contacts(sides: &[SurfaceSide], tolerance: f64) -> Vec<Contact> {
     let axis = longest_axis(sides);
     let mut edges: Vec<Edge> =
         sides.iter().enumerate().flat_map(|(number, side)| edges_of(number, side, axis)).collect();
@@ -86,12 +86,12 @@ fn contacts(sides: &[Side], tolerance: f64) -> Vec<Contact> {
     found
 }
 
-fn longest_axis(sides: &[Side]) -> usize {
+fn longest_axis(sides: &[SurfaceSide]) -> usize {
     let extent = Aabb::around(sides.iter().flat_map(|side| side.corners.as_slice())).size();
     (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0)
 }
 
-fn edges_of(number: usize, side: &Side, axis: usize) -> impl Iterator<Item = Edge> {
+fn edges_of(number: usize, side: &SurfaceSide, axis: usize) -> impl Iterator<Item = Edge> {
     let corners = side.corners.as_slice();
     (0..corners.len()).map(move |i| {
         let ends = [corners[i], corners[(i + 1) % corners.len()]];
@@ -131,12 +131,12 @@ mod tests {
     use equilux_formats::{Corners, MaterialId, Surface};
     use glam::dvec3;
 
-    fn side(corners: [[f64; 3]; 4]) -> Side {
-        Side::of(&Surface::new(Corners::quad(corners.map(DVec3::from_array)), MaterialId(0)))
+    fn side(corners: [[f64; 3]; 4]) -> SurfaceSide {
+        SurfaceSide::of(&Surface::new(Corners::quad(corners.map(DVec3::from_array)), MaterialId(0)))
     }
 
     /// The square over `[x, x + 1]` × `[y, y + 1]` at z = 0, facing up.
-    fn tile(x: f64, y: f64) -> Side {
+    fn tile(x: f64, y: f64) -> SurfaceSide {
         side([[x, y, 0.0], [x + 1.0, y, 0.0], [x + 1.0, y + 1.0, 0.0], [x, y + 1.0, 0.0]])
     }
 

@@ -1,7 +1,7 @@
 //! The charts of parts, and how many texels they will take. In go a scene's parts; out come their charts, and a texel size
 //! that suits the scene.
 
-use super::authored::Authored;
+use super::authored::AuthoredLayout;
 use super::bounds::Bounds;
 use super::chart::{Chart, charts};
 use super::grid::MARGIN;
@@ -17,7 +17,7 @@ const FILLED: f64 = 0.85;
 #[derive(Debug)]
 pub struct PartCharts {
     /// The author's.
-    pub authored: Option<Authored>,
+    pub authored: Option<AuthoredLayout>,
     /// Ours, made when they are needed.
     pub own: Option<Arc<[Chart]>>,
     /// Why the author's layout is not kept, at least in one place.
@@ -27,7 +27,7 @@ pub struct PartCharts {
 impl PartCharts {
     /// The charts of `part`.
     pub fn of(part: &Part) -> Self {
-        let (authored, refused) = match Authored::of(part) {
+        let (authored, refused) = match AuthoredLayout::of(part) {
             Some(Ok(authored)) => (Some(authored), None),
             Some(Err(why)) => (None, Some(why)),
             None => (None, None),

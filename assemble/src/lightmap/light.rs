@@ -3,9 +3,10 @@
 //! Direct light is averaged over the footprint; reflected light is gathered at as many texels as it takes.
 
 use super::field::interpolated;
-use super::texels::{Piece, Texel, Texels};
-use crate::gather::faces::Plane;
-use crate::gather::{Gather, piece};
+use super::texels::{Footprint, Texel, Texels};
+use crate::gather::Gather;
+use crate::gather::faces::CoplanarFaces;
+use crate::gather::surface_piece::SurfacePiece;
 use equilux_formats::Rgb;
 use glam::DVec3;
 
@@ -38,7 +39,7 @@ impl<'a> TexelLight<'a> {
     }
 
     /// The faces in the plane of each patch, which is where a piece of it lies: the corner of its grid may be far away.
-    fn planes(&self, texels: &Texels) -> Vec<Plane<'_>> {
+    fn planes(&self, texels: &Texels) -> Vec<CoplanarFaces<'_>> {
         let mut points: Vec<DVec3> = texels.patches.iter().map(|patch| patch.origin).collect();
         for piece in texels.texels.iter().flat_map(|texel| &texel.pieces) {
             points[piece.patch] = piece.corners[0];
@@ -47,12 +48,12 @@ impl<'a> TexelLight<'a> {
         points.iter().zip(&texels.patches).map(|(&p, patch)| faces.in_plane(p, patch.normal)).collect()
     }
 
-    fn direct(&self, texels: &Texels, planes: &[Plane]) -> Vec<Rgb> {
+    fn direct(&self, texels: &Texels, planes: &[CoplanarFaces]) -> Vec<Rgb> {
         let all: Vec<&Texel> = texels.texels.iter().collect();
         means(&all, planes, |pieces| self.gather.direct(pieces, self.mean))
     }
 
-    fn reflected(&self, texels: &Texels, planes: &[Plane]) -> Vec<Rgb> {
+    fn reflected(&self, texels: &Texels, planes: &[CoplanarFaces]) -> Vec<Rgb> {
         let gathered =
             |texels: &[&Texel]| means(texels, planes, |pieces| self.gather.reflected_over(pieces, self.mean));
         interpolated(self.gather, texels, gathered, |corners, told, found| {
@@ -74,13 +75,13 @@ impl<'a> TexelLight<'a> {
         found.into_iter().map(|Rgb(direction)| direction).collect()
     }
 
-    fn mean_directions(&self, texels: &[&Texel], planes: &[Plane]) -> Vec<Rgb> {
+    fn mean_directions(&self, texels: &[&Texel], planes: &[CoplanarFaces]) -> Vec<Rgb> {
         let largest = |texel: &&Texel| {
-            let by_area = |a: &&Piece, b: &&Piece| a.area.total_cmp(&b.area);
+            let by_area = |a: &&Footprint, b: &&Footprint| a.area.total_cmp(&b.area);
             texel.pieces.iter().max_by(by_area).expect("a texel holds some of its chart").clone()
         };
-        let pieces: Vec<Piece> = texels.iter().map(largest).collect();
-        let pieces: Vec<piece::Piece> = pieces.iter().map(|piece| averaged(piece, planes)).collect();
+        let pieces: Vec<Footprint> = texels.iter().map(largest).collect();
+        let pieces: Vec<SurfacePiece> = pieces.iter().map(|piece| averaged(piece, planes)).collect();
         self.gather.directions(&pieces).into_iter().map(|direction| Rgb(direction.to_array())).collect()
     }
 
@@ -90,8 +91,12 @@ impl<'a> TexelLight<'a> {
 }
 
 /// The mean light of each texel's pieces.
-fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[piece::Piece]) -> Vec<Rgb>) -> Vec<Rgb> {
-    let pieces: Vec<piece::Piece> =
+fn means(
+    texels: &[&Texel],
+    planes: &[CoplanarFaces],
+    light: impl Fn(&[SurfacePiece]) -> Vec<Rgb>,
+) -> Vec<Rgb> {
+    let pieces: Vec<SurfacePiece> =
         texels.iter().flat_map(|texel| &texel.pieces).map(|piece| averaged(piece, planes)).collect();
     let mut light = light(&pieces).into_iter();
     let mean = |texel: &&Texel| {
@@ -104,6 +109,6 @@ fn means(texels: &[&Texel], planes: &[Plane], light: impl Fn(&[piece::Piece]) ->
     texels.iter().map(mean).collect()
 }
 
-fn averaged<'a>(piece: &'a Piece, planes: &'a [Plane<'a>]) -> piece::Piece<'a> {
-    piece::Piece { corners: &piece.corners, normal: piece.normal, plane: &planes[piece.patch] }
+fn averaged<'a>(piece: &'a Footprint, planes: &'a [CoplanarFaces<'a>]) -> SurfacePiece<'a> {
+    SurfacePiece { corners: &piece.corners, normal: piece.normal, plane: &planes[piece.patch] }
 }

@@ -9,14 +9,14 @@ use serde_json::{Value, json};
 const DIRECTIONS: &str = "mean direction to the light, scene axes, weighted by the luminance of its irradiance: 1 long where light comes from one direction, 0 where it comes evenly from all";
 
 /// A file in memory.
-pub struct File {
+pub struct NamedBytes {
     /// Its name.
     pub name: String,
     /// Its contents.
     pub bytes: Vec<u8>,
 }
 
-impl File {
+impl NamedBytes {
     /// A file of this name and these contents.
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         Self { name: name.into(), bytes }
@@ -25,7 +25,7 @@ impl File {
 
 /// The list. `images`: for each image of the lightmap its EXR and its PNG. The EXRs' numbers are those in `units` times
 /// `scale`.
-pub fn listing(lightmap: &Lightmap, images: &[[File; 2]], units: Units, scale: f64) -> Value {
+pub fn listing(lightmap: &Lightmap, images: &[[NamedBytes; 2]], units: Units, scale: f64) -> Value {
     let instances = lightmap.scene.instances.iter().enumerate();
     json!({
         "units": units.name(),
@@ -47,7 +47,7 @@ pub fn listing(lightmap: &Lightmap, images: &[[File; 2]], units: Units, scale: f
     })
 }
 
-fn hash(file: &File) -> String {
+fn hash(file: &NamedBytes) -> String {
     blake3::hash(&file.bytes).to_hex().to_string()
 }
 

@@ -32,7 +32,7 @@ mod tints;
 mod write;
 
 pub use images::Units;
-pub use write::{Saved, write};
+pub use write::write;
 
 use atlas::{Atlas, Tile};
 use bands::bands;
@@ -41,7 +41,7 @@ use equilux_formats::{Error, Material, MaterialId, Result, Rgb, Scene};
 use rayon::prelude::*;
 use std::ops::Range;
 use texels::Texels;
-use tints::Of;
+use tints::TintTarget;
 
 /// Options of lightmaps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -103,13 +103,13 @@ impl<'a> Lightmap<'a> {
         let (mut irradiance, holds) = with_margins(values, &tiles);
         let mut tints = None;
         if let Some(coats) = tints::coats(scene) {
-            let tint = |of: Of| {
+            let tint = |of: TintTarget| {
                 let tint = |texels: &Texels| tints::tints(scene, &coats, texels, of);
                 let step = ("textures of the lightmap", 0.0);
                 let values = self::values(scene, atlas, &tiles, tint, step, monitor)?;
                 Ok(with_margins(values, &tiles).0)
             };
-            tints = Some([tint(Of::Reflectance)?, tint(Of::Emission)?]);
+            tints = Some([tint(TintTarget::Reflectance)?, tint(TintTarget::Emission)?]);
         }
         seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));

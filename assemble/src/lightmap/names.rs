@@ -1,4 +1,4 @@
-//! File names of lightmaps.
+//! NamedBytes names of lightmaps.
 
 /// The first image has no number: mostly it is the only one.
 pub fn name(number: usize, ending: &str) -> String {

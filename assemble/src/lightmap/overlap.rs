@@ -7,10 +7,10 @@ use glam::{DVec2, DVec3};
 /// Whether any two of `polygons` overlap, seen along `direction` (unit), by more than rounding.
 pub fn any_overlap(polygons: impl Iterator<Item = Corners>, direction: DVec3) -> bool {
     let (u, v) = direction.any_orthonormal_pair();
-    let seen = |corners: Corners| -> Seen {
-        Seen::new(corners.as_slice().iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect())
+    let seen = |corners: Corners| -> ProjectedPolygon {
+        ProjectedPolygon::new(corners.as_slice().iter().map(|p| DVec2::new(p.dot(u), p.dot(v))).collect())
     };
-    let mut seen: Vec<Seen> = polygons.map(seen).collect();
+    let mut seen: Vec<ProjectedPolygon> = polygons.map(seen).collect();
     let reach = seen.iter().map(|s| s.low.abs().max(s.high.abs()).max_element()).fold(0.0, f64::max);
     let tolerance = 8.0 * FLATNESS * reach;
     seen.sort_by(|a, b| a.low.x.total_cmp(&b.low.x));
@@ -20,13 +20,13 @@ pub fn any_overlap(polygons: impl Iterator<Item = Corners>, direction: DVec3) ->
     })
 }
 
-struct Seen {
+struct ProjectedPolygon {
     corners: Vec<DVec2>,
     low: DVec2,
     high: DVec2,
 }
 
-impl Seen {
+impl ProjectedPolygon {
     fn new(corners: Vec<DVec2>) -> Self {
         let low = corners.iter().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = corners.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
@@ -34,13 +34,13 @@ impl Seen {
     }
 }
 
-fn overlap(a: &Seen, b: &Seen, tolerance: f64) -> bool {
+fn overlap(a: &ProjectedPolygon, b: &ProjectedPolygon, tolerance: f64) -> bool {
     let boxes_apart = a.low.y >= b.high.y - tolerance || b.low.y >= a.high.y - tolerance;
     !boxes_apart && !edge_between(a, b, tolerance) && !edge_between(b, a, tolerance)
 }
 
 /// Whether some edge of `a` has all of `b` on its outer side.
-fn edge_between(a: &Seen, b: &Seen, tolerance: f64) -> bool {
+fn edge_between(a: &ProjectedPolygon, b: &ProjectedPolygon, tolerance: f64) -> bool {
     (0..a.corners.len()).any(|i| {
         let (from, to) = (a.corners[i], a.corners[(i + 1) % a.corners.len()]);
         let Some(outward) = (from - to).perp().try_normalize() else { return false };

@@ -8,7 +8,7 @@
 use super::atlas::{Atlas, Tile};
 use super::contacts::{Contact, smooth_contacts};
 use super::least_squares::{Difference, correction};
-use super::side::Side;
+use super::side::SurfaceSide;
 use super::texels::bilinear;
 use equilux_formats::{Instance, Rgb};
 use glam::{DAffine3, DVec3};
@@ -65,7 +65,7 @@ fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[
     for (number, tile) in tiles.iter().enumerate() {
         let placement = instances[tile.instance].placement;
         let (chart, _) = atlas.chart_of(tile);
-        sides.extend(chart.sides.iter().map(|side| Side::of(&side.surface().placed(placement))));
+        sides.extend(chart.sides.iter().map(|side| SurfaceSide::of(&side.surface().placed(placement))));
         whose.extend(chart.planes.iter().map(|&plane| (number, plane)));
     }
     let seams = smooth_contacts(&sides).into_iter().filter_map(|contact: Contact| {

@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 
 /// A surface seen from the side that is lit.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct SurfaceSide {
     /// Corners, counter-clockwise seen from this side, metres.
     pub corners: Corners,
     /// Unit normal of this side.
@@ -19,7 +19,7 @@ pub struct Side {
     pub lightmap: Option<[DVec2; 4]>,
 }
 
-impl Side {
+impl SurfaceSide {
     /// The side of a surface that its corners run around counter-clockwise. The area must be above zero.
     pub fn of(surface: &Surface) -> Self {
         let Surface { corners, material, lightmap, .. } = *surface;
@@ -40,7 +40,11 @@ impl Side {
 }
 
 /// All sides of `part`, fronts in the order of its surfaces, then backs.
-pub fn sides(part: &Part) -> Vec<Side> {
+pub fn sides(part: &Part) -> Vec<SurfaceSide> {
     let double = part.surfaces.iter().filter(|surface| part.is_two_sided(surface));
-    part.surfaces.iter().map(Side::of).chain(double.map(|surface| Side::of(&surface.flipped()))).collect()
+    part.surfaces
+        .iter()
+        .map(SurfaceSide::of)
+        .chain(double.map(|surface| SurfaceSide::of(&surface.flipped())))
+        .collect()
 }

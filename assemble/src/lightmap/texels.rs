@@ -29,12 +29,12 @@ pub struct Texel {
     /// Its column and row in the chart's rectangle.
     pub at: [u32; 2],
     /// Its footprint: the parts of the chart's sides inside its square.
-    pub pieces: Vec<Piece>,
+    pub pieces: Vec<Footprint>,
 }
 
 /// A planar convex piece of a side.
 #[derive(Debug, Clone)]
-pub struct Piece {
+pub struct Footprint {
     /// The patch it lies in, by number.
     pub patch: usize,
     /// Corners, counter-clockwise seen from the lit side, metres.
@@ -56,7 +56,7 @@ impl Texels {
     /// The texels of `chart` in these `rows` of its rectangle; `instance` places it by `placement`, a similarity.
     pub fn new(chart: &Chart, grid: &Grid, rows: Range<u32>, instance: usize, placement: DAffine3) -> Self {
         let patches: Vec<Patch> = grid.patches().copied().collect();
-        let mut texels: BTreeMap<[u32; 2], Vec<Piece>> = BTreeMap::new();
+        let mut texels: BTreeMap<[u32; 2], Vec<Footprint>> = BTreeMap::new();
         let determinant = placement.matrix3.determinant();
         let grows = determinant.abs().cbrt().powi(2);
         for (side, &patch) in chart.sides.iter().zip(&chart.planes) {
@@ -79,10 +79,10 @@ impl Texels {
                 if determinant < 0.0 {
                     corners.reverse();
                 }
-                texels.entry([row, column]).or_default().push(Piece { patch, corners, normal, area });
+                texels.entry([row, column]).or_default().push(Footprint { patch, corners, normal, area });
             });
         }
-        let texel = |([row, column], pieces): ([u32; 2], Vec<Piece>)| Texel { at: [column, row], pieces };
+        let texel = |([row, column], pieces): ([u32; 2], Vec<Footprint>)| Texel { at: [column, row], pieces };
         Self {
             instance,
             material: chart.material,

@@ -8,7 +8,7 @@ use glam::{DAffine3, DVec3};
 
 /// Which of the two colours is asked for.
 #[derive(Debug, Clone, Copy)]
-pub enum Of {
+pub enum TintTarget {
     /// That on the reflectance.
     Reflectance,
     /// That on the emission.
@@ -22,7 +22,7 @@ pub fn coats(scene: &Scene) -> Option<Vec<Coat<'_>>> {
 }
 
 /// The mean colour over each of these texels.
-pub fn tints(scene: &Scene, coats: &[Coat], texels: &Texels, of: Of) -> Vec<Rgb> {
+pub fn tints(scene: &Scene, coats: &[Coat], texels: &Texels, of: TintTarget) -> Vec<Rgb> {
     let instance = &scene.instances[texels.instance];
     let (coat, back) = (&coats[instance.part.index()], instance.placement.inverse());
     texels
@@ -32,10 +32,10 @@ pub fn tints(scene: &Scene, coats: &[Coat], texels: &Texels, of: Of) -> Vec<Rgb>
         .collect()
 }
 
-fn colour((reflectance, emission): (Rgb, Rgb), of: Of) -> Rgb {
+fn colour((reflectance, emission): (Rgb, Rgb), of: TintTarget) -> Rgb {
     match of {
-        Of::Reflectance => reflectance,
-        Of::Emission => emission,
+        TintTarget::Reflectance => reflectance,
+        TintTarget::Emission => emission,
     }
 }
 

@@ -4,33 +4,24 @@
 //! in viewers that know it, and most engines do not.
 
 use super::images::{directions_exr, exr, half_scale, peaks, png, relative_png, shown_png};
-use super::listing::{File, listing};
+use super::listing::{NamedBytes, listing};
 use super::model::{Look, model};
 use super::names::{direction_name, name};
 use super::{Lightmap, Units};
-use crate::output_file;
+use crate::output_file::{self, WrittenFiles};
 use crate::picture::exposure::Exposure;
 use equilux_formats::{Error, Result};
 use std::io;
-use std::path::{Path, PathBuf};
-
-/// What was written.
-#[derive(Debug)]
-pub struct Saved {
-    /// The files.
-    pub paths: Vec<PathBuf>,
-    /// What a person should know of them.
-    pub notes: Vec<String>,
-}
+use std::path::Path;
 
 /// Write all files of `lightmap` to `folder`, and take away images that an earlier, larger one left there.
-pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposure) -> Result<Saved> {
+pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposure) -> Result<WrittenFiles> {
     let most =
         lightmap.irradiance.iter().flatten().flatten().fold(0.0f64, |most, &h| most.max(h)) * units.factor();
     let scale = half_scale(most);
     let made = files(lightmap, units, scale, exposure).map_err(|error| unmade(folder, &error))?;
     let mut paths = Vec::new();
-    for File { name, bytes } in &made {
+    for NamedBytes { name, bytes } in &made {
         let path = folder.join(name);
         output_file::write(&path, |out| out.write_all(bytes))?;
         paths.push(path);
@@ -40,18 +31,18 @@ pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposur
         "half floats cannot hold a lightmap that is {most:.3e} at its brightest: its numbers are multiplied by {scale}"
     );
     let notes = lightmap.atlas.notes.iter().cloned().chain((scale != 1.0).then_some(scaled));
-    Ok(Saved { paths, notes: notes.collect() })
+    Ok(WrittenFiles { paths, notes: notes.collect() })
 }
 
 /// All files, images first.
-fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> io::Result<Vec<File>> {
+fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> io::Result<Vec<NamedBytes>> {
     let numbers = || 0..lightmap.atlas.images.len();
     let pair = |number| {
         let light = exr(lightmap, number, units.factor() * scale)?;
         let preview = png(lightmap, number, exposure)?;
-        Ok([File::new(name(number, "exr"), light), File::new(name(number, "png"), preview)])
+        Ok([NamedBytes::new(name(number, "exr"), light), NamedBytes::new(name(number, "png"), preview)])
     };
-    let images: Vec<[File; 2]> = numbers().map(pair).collect::<io::Result<_>>()?;
+    let images: Vec<[NamedBytes; 2]> = numbers().map(pair).collect::<io::Result<_>>()?;
     let list = format!("{:#}\n", listing(lightmap, &images, units, scale)).into_bytes();
     let peaks = peaks(lightmap);
     let relative: Vec<Vec<u8>> =
@@ -59,14 +50,14 @@ fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> i
     let shown: Vec<Vec<u8>> =
         numbers().map(|n| shown_png(lightmap, n, exposure)).collect::<io::Result<_>>()?;
     let others = [
-        File::new("lightmapped.glb", model(lightmap, &relative, &Look::Emissive(&peaks))?),
-        File::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
-        File::new("lightmaps.json", list),
+        NamedBytes::new("lightmapped.glb", model(lightmap, &relative, &Look::Emissive(&peaks))?),
+        NamedBytes::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
+        NamedBytes::new("lightmaps.json", list),
     ];
     let directions = |number: usize, of: &Vec<Vec<[f64; 3]>>| {
-        Ok(File::new(direction_name(number), directions_exr(lightmap, number, of)?))
+        Ok(NamedBytes::new(direction_name(number), directions_exr(lightmap, number, of)?))
     };
-    let directions: Vec<File> = lightmap
+    let directions: Vec<NamedBytes> = lightmap
         .directions
         .iter()
         .flat_map(|of| numbers().map(move |number| directions(number, of)))

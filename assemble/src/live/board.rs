@@ -1,7 +1,7 @@
 //! What a run has published and viewers may see. In go the run's results as they come, through [`Observer`]; out come snapshots
 //! and news. The run waits for nobody: it copies its light at most every [`PACE`], and viewers do the rest on their thread.
 
-use super::field::{Field, Light, Snapshot, Values, computed, row_sums};
+use super::field::{Field, RoundLight, Snapshot, Values, computed, row_sums};
 use super::history::{History, Point};
 use super::model::Model;
 use super::status::{Phase, Status};
@@ -10,7 +10,7 @@ use crate::equation::observer::Observer;
 use crate::exchange::listener::{FinishedRound, Listener};
 use crate::exchange::outcome::Outcome;
 use crate::exchange::step_times::StepTimes;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::report::Report;
 use crate::report::seconds::{Seconds, rounds, seconds};
 use equilux_bake::oven::Baked;
@@ -27,7 +27,7 @@ pub const PACE: Duration = Duration::from_millis(100);
 /// What a run has published.
 #[derive(Debug)]
 pub struct Board {
-    state: Mutex<State>,
+    state: Mutex<BoardState>,
     /// Tells that there is something new to fetch. Whoever listens is a viewer.
     changed: watch::Sender<()>,
     enough: AtomicBool,
@@ -35,7 +35,7 @@ pub struct Board {
 
 /// All that viewers may see.
 #[derive(Debug, Default)]
-pub struct State {
+pub struct BoardState {
     /// In words.
     pub status: Status,
     /// Changes with the status.
@@ -44,7 +44,7 @@ pub struct State {
     pub history: History,
     /// The scene, once it is placed.
     pub model: Option<Arc<Model>>,
-    light: Option<Light>,
+    light: Option<RoundLight>,
     light_number: u32,
     row_sums: Arc<Vec<f32>>,
     computed: Arc<Vec<f32>>,
@@ -58,14 +58,14 @@ impl Board {
     pub fn new(watched: bool) -> Self {
         let status = Status { watched, ..Status::default() };
         Self {
-            state: Mutex::new(State { status, ..State::default() }),
+            state: Mutex::new(BoardState { status, ..BoardState::default() }),
             changed: watch::Sender::new(()),
             enough: AtomicBool::new(false),
         }
     }
 
     /// A look at the state; the run may wait for it, so be quick.
-    pub fn state(&self) -> MutexGuard<'_, State> {
+    pub fn state(&self) -> MutexGuard<'_, BoardState> {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
@@ -126,7 +126,7 @@ impl Board {
         (number > than).then_some(Snapshot { run: model.run, number, values })
     }
 
-    fn tell(&self, change: impl FnOnce(&mut State)) {
+    fn tell(&self, change: impl FnOnce(&mut BoardState)) {
         let mut state = self.state();
         change(&mut state);
         state.status_number += 1;
@@ -135,7 +135,7 @@ impl Board {
     }
 }
 
-impl State {
+impl BoardState {
     /// Put the light of some instances into that of the scene.
     fn publish(&mut self, instances: &[usize], radiosity: &[Rgb]) {
         let Some(light) = &mut self.light else { return };
@@ -166,7 +166,7 @@ impl Observer for Board {
         self.tell(|state| state.status.bake(number, part));
     }
 
-    fn placed(&self, placed: &Placed, cameras: &[Camera]) {
+    fn placed(&self, placed: &PlacedParts, cameras: &[Camera]) {
         let run = self.state().status.run;
         let model = Arc::new(Model::new(run, placed, cameras));
         self.tell(|state| {
@@ -181,7 +181,7 @@ impl Observer for Board {
         self.tell(|state| state.status.couple(instance, coupled));
     }
 
-    fn coupled_all(&self, placed: &Placed, coupled: &[Coupled], optics: &Optics) {
+    fn coupled_all(&self, placed: &PlacedParts, coupled: &[Coupled], optics: &Optics) {
         let (row_sums, computed) = (row_sums(placed, coupled), computed(placed, coupled));
         let seconds = seconds(placed, coupled, &StepTimes::none(coupled.len()));
         let optics = Arc::new(optics.clone());
@@ -190,7 +190,8 @@ impl Observer for Board {
             (state.status.seconds, state.status.phase) = (seconds, Phase::Exchange);
             let radiosity = Arc::new(vec![Rgb::BLACK; optics.emission.len()]);
             let model = state.model.clone();
-            state.light = model.map(|model| Light { model, round: 0, radiosity, irradiance: None, optics });
+            state.light =
+                model.map(|model| RoundLight { model, round: 0, radiosity, irradiance: None, optics });
             (state.began, state.published) = (Some(Instant::now()), None);
         });
     }

@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use crate::equation::coupling::Coupled;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_formats::{Optics, Rgb};
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -27,7 +27,7 @@ pub const UNKNOWN: f32 = f32::MIN;
 
 /// The light of a round.
 #[derive(Debug, Clone)]
-pub struct Light {
+pub struct RoundLight {
     /// Where it is seen.
     pub model: Arc<Model>,
     /// The round that it was published after; 0 before the first.
@@ -53,7 +53,7 @@ pub struct Snapshot {
 /// What a snapshot shows.
 pub enum Values {
     /// Light.
-    Light(Light, Field),
+    Light(RoundLight, Field),
     /// One number an element.
     Numbers(Arc<Vec<f32>>),
 }
@@ -75,7 +75,7 @@ impl Snapshot {
     }
 }
 
-impl Light {
+impl RoundLight {
     /// Exposure, numbers an element, numbers.
     fn shown(&self, field: Field) -> (f64, u32, Vec<f32>) {
         let exposure = |light: &[Rgb]| self.model.exposure(light, &self.optics.emission).0;
@@ -104,7 +104,7 @@ impl Light {
 }
 
 /// |1 − Σ_j F_ij| of all elements.
-pub fn row_sums(placed: &Placed, coupled: &[Coupled]) -> Vec<f32> {
+pub fn row_sums(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<f32> {
     let of = |k: usize| {
         let own = coupled[k].self_block(&placed.part_of(k).part.self_block);
         let sum = move |i: usize| own.row_sum(i) + coupled[k].coupling.row_sum(i);
@@ -114,12 +114,12 @@ pub fn row_sums(placed: &Placed, coupled: &[Coupled]) -> Vec<f32> {
 }
 
 /// The share of each element's form factors that was computed in this run.
-pub fn computed(placed: &Placed, coupled: &[Coupled]) -> Vec<f32> {
+pub fn computed(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<f32> {
     let of = |k: usize| computed_of(placed, coupled, k);
     (0..coupled.len()).into_par_iter().map(of).collect::<Vec<_>>().concat()
 }
 
-fn computed_of(placed: &Placed, coupled: &[Coupled], k: usize) -> Vec<f32> {
+fn computed_of(placed: &PlacedParts, coupled: &[Coupled], k: usize) -> Vec<f32> {
     let (baked, blocks) = (placed.part_of(k), &coupled[k]);
     let own = blocks.self_block(&baked.part.self_block);
     let count = |rows: &[u32], i: usize| rows.get(i).map_or(0, |&count| count as usize);

@@ -3,7 +3,7 @@
 
 use crate::picture::camera::View;
 use crate::picture::exposure::Exposure;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::rays::RayIndex;
 use equilux_formats::{Camera, Element, Rgb};
@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 /// Rays that ask what a picture shows, to expose it; its exposure itself takes the rays of all pixels.
 const RAYS: UVec2 = uvec2(96, 72);
 
-/// Placed elements.
+/// PlacedParts elements.
 #[derive(Debug)]
 pub struct Model {
     /// The run that placed them.
@@ -24,12 +24,12 @@ pub struct Model {
     /// The elements of each instance.
     places: Vec<Range<usize>>,
     cameras: Vec<Camera>,
-    seen: OnceLock<Seen>,
+    seen: OnceLock<PictureView>,
 }
 
 /// What the eye of the pictures sees.
 #[derive(Debug)]
-struct Seen {
+struct PictureView {
     view: View,
     /// How far away that is which the middle of the picture shows, metres.
     depth: f64,
@@ -39,7 +39,7 @@ struct Seen {
 
 impl Model {
     /// A copy of what is placed.
-    pub fn new(run: u32, placed: &Placed, cameras: &[Camera]) -> Self {
+    pub fn new(run: u32, placed: &PlacedParts, cameras: &[Camera]) -> Self {
         Self {
             run,
             elements: placed.world.elements.clone(),
@@ -65,7 +65,7 @@ impl Model {
     pub fn bytes(&self) -> Vec<u8> {
         let around = Aabb::around(self.elements.iter().flat_map(|element| element.corners.as_slice()));
         let centre = around.centre();
-        let Seen { view, depth, .. } = self.seen();
+        let PictureView { view, depth, .. } = self.seen();
         let head = json!({
             "run": self.run,
             "elements": self.elements.len(),
@@ -93,7 +93,7 @@ impl Model {
     }
 
     /// Found when it is first asked for: not by the run, which has better things to do.
-    fn seen(&self) -> &Seen {
+    fn seen(&self) -> &PictureView {
         self.seen.get_or_init(|| {
             let index = RayIndex::new(&self.elements);
             let view = View::of_scene(&self.cameras, &self.elements, &index);
@@ -103,7 +103,7 @@ impl Model {
             let points = (0..RAYS.x * RAYS.y).map(|i| uvec2(i % RAYS.x, i / RAYS.x).as_dvec2() + 0.5);
             let meets = |point: DVec2| index.first_front(view.position, view.ray(point * pixel));
             let elements = points.filter_map(|point| Some(meets(point)?.element)).collect();
-            Seen { depth, elements, view }
+            PictureView { depth, elements, view }
         })
     }
 

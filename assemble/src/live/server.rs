@@ -105,13 +105,17 @@ async fn model(State(site): State<Site>) -> Response {
 
 /// What a viewer has already.
 #[derive(Deserialize)]
-struct Known {
+struct FieldQuery {
     /// The number of the newest snapshot; 0 for none.
     after: u32,
 }
 
 /// A field newer than what the viewer has, as soon as there is one.
-async fn field(State(site): State<Site>, Path(field): Path<Field>, Query(known): Query<Known>) -> Response {
+async fn field(
+    State(site): State<Site>,
+    Path(field): Path<Field>,
+    Query(known): Query<FieldQuery>,
+) -> Response {
     let (mut changes, end) = (site.board.viewer(), Instant::now() + PATIENCE);
     loop {
         if let Some(snapshot) = site.board.newer(field, known.after) {
@@ -168,7 +172,7 @@ struct News {
 
 /// What a viewer has been sent.
 #[derive(Default, PartialEq, Clone)]
-struct Sent {
+struct ViewerState {
     run: u32,
     status: Option<u64>,
     points: usize,
@@ -179,7 +183,7 @@ struct Sent {
 async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
     // Held as long as the viewer is there: it counts as one.
     let viewer = site.board.viewer();
-    let stream = unfold((site, Sent::default(), viewer), |(site, mut sent, viewer)| async move {
+    let stream = unfold((site, ViewerState::default(), viewer), |(site, mut sent, viewer)| async move {
         loop {
             if sent.status.is_some() {
                 sleep(PACE).await;
@@ -194,13 +198,13 @@ async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event
 }
 
 /// What is new since, if anything is.
-fn news(site: &Site, sent: &mut Sent) -> Option<News> {
+fn news(site: &Site, sent: &mut ViewerState) -> Option<News> {
     let progress = site.monitor.now();
     let state = site.board.state();
     let run = state.status.run;
     let from = if sent.run == run { sent.points } else { 0 };
     let points = state.history.since(from).to_vec();
-    let now = Sent {
+    let now = ViewerState {
         run,
         status: Some(state.status_number),
         points: from + points.len(),

@@ -41,7 +41,7 @@ impl Phase {
 /// What became of some form factors.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Fate {
+pub enum BlockState {
     /// Not looked at yet.
     #[default]
     Waiting,
@@ -51,7 +51,7 @@ pub enum Fate {
     Computed,
 }
 
-impl From<&Origin> for Fate {
+impl From<&Origin> for BlockState {
     fn from(origin: &Origin) -> Self {
         if origin.is_reused() { Self::Reused } else { Self::Computed }
     }
@@ -65,7 +65,7 @@ pub struct PartStatus {
     /// Its elements.
     pub elements: usize,
     /// What became of its own form factors.
-    pub own: Fate,
+    pub own: BlockState,
     /// The same in a sentence.
     pub reason: String,
 }
@@ -78,11 +78,11 @@ pub struct InstanceStatus {
     /// The number of its part.
     pub part: usize,
     /// What became of what couples it with all others.
-    pub coupling: Fate,
+    pub coupling: BlockState,
     /// The same in a sentence.
     pub reason: String,
     /// What became of its own form factors where something foreign stands inside it.
-    pub inside: Option<Fate>,
+    pub inside: Option<BlockState>,
 }
 
 /// All of a run but its light.
@@ -141,14 +141,15 @@ impl Status {
     /// A part is baked.
     pub fn bake(&mut self, number: usize, baked: &Baked) {
         let part = &mut self.parts[number];
-        (part.own, part.reason) = (Fate::from(&baked.form_factors), baked.form_factors.to_string());
+        (part.own, part.reason) = (BlockState::from(&baked.form_factors), baked.form_factors.to_string());
     }
 
     /// An instance is coupled.
     pub fn couple(&mut self, number: usize, coupled: &Coupled) {
         let instance = &mut self.instances[number];
-        (instance.coupling, instance.reason) = (Fate::from(&coupled.origin), coupled.origin.to_string());
-        instance.inside = coupled.corrected.as_ref().map(|corrected| Fate::from(&corrected.origin));
+        (instance.coupling, instance.reason) =
+            (BlockState::from(&coupled.origin), coupled.origin.to_string());
+        instance.inside = coupled.corrected.as_ref().map(|corrected| BlockState::from(&corrected.origin));
     }
 
     /// All is written.

@@ -8,7 +8,8 @@ pub mod scene_light;
 use crate::gather::points::{self, Place};
 use crate::lightmap::atlas::Atlas;
 use crate::lightmap::light::TexelLight;
-use crate::lightmap::{self, Lightmap, Saved};
+use crate::lightmap::{self, Lightmap};
+use crate::output_file::WrittenFiles;
 use crate::outputs::scene_light::SceneLight;
 use crate::picture::camera::View;
 use crate::picture::canvas::Canvas;
@@ -46,7 +47,7 @@ const FIRST_ROUNDS: usize = 3;
 
 /// What there is to show.
 #[derive(Debug)]
-pub struct Light<'a> {
+pub struct RunResults<'a> {
     /// The light.
     pub solved: &'a Solved,
     /// The classic solution, if asked for.
@@ -61,7 +62,7 @@ pub struct Light<'a> {
 
 /// What was written.
 #[derive(Debug)]
-pub struct Written {
+pub struct OutputRecord {
     /// The paths, for a person.
     pub paths: Vec<String>,
     /// What a person should know of them.
@@ -107,38 +108,38 @@ pub fn unusable(folder: &Path, error: &std::io::Error) -> Error {
 pub fn write_all(
     requests: &OutputRequests,
     scene: &Scene,
-    light: &Light,
+    results: &RunResults,
     monitor: &Monitor,
-) -> Result<Written> {
+) -> Result<OutputRecord> {
     let folder = requests.folder.join(&scene.name);
     prepare_folder(&folder)?;
-    let elements = light.solved.elements();
+    let elements = results.solved.elements();
     let mut lines = Vec::new();
     let exposure = if requests.pictures == Pictures::None {
         Exposure::choose(
             || 0..elements.len(),
-            light.solved.radiosity(),
-            &light.solved.equation.optics.emission,
+            results.solved.radiosity(),
+            &results.solved.equation.optics.emission,
         )
     } else {
         let index = RayIndex::new(elements);
         let canvas = Canvas::trace(View::of_scene(&scene.cameras, elements, &index), &index);
         let exposure = Exposure::choose(
             || canvas.elements(),
-            light.solved.radiosity(),
-            &light.solved.equation.optics.emission,
+            results.solved.radiosity(),
+            &results.solved.equation.optics.emission,
         );
-        lines.extend(draw_all(requests, &folder, light, &canvas, exposure, monitor)?);
+        lines.extend(draw_all(requests, &folder, results, &canvas, exposure, monitor)?);
         exposure
     };
-    let mut written = write_tables(requests, &folder, scene.origin, light, exposure)?;
-    let lightmaps = write_lightmaps(requests, &folder, scene, light, exposure, monitor)?;
+    let mut written = write_tables(requests, &folder, scene.origin, results, exposure)?;
+    let lightmaps = write_lightmaps(requests, &folder, scene, results, exposure, monitor)?;
     let (start, cpu) = (Instant::now(), cpu_seconds());
-    let points = write_points(&folder, scene.origin, light, monitor)?;
+    let points = write_points(&folder, scene.origin, results, monitor)?;
     let (point_time, point_cpu) = (start.elapsed(), cpu_since(cpu));
     let mut notes = Vec::new();
     if let Some(shot) = &requests.shot {
-        let drawn = shot::draw(shot, light.against, scene, light.solved, &folder)?;
+        let drawn = shot::draw(shot, results.against, scene, results.solved, &folder)?;
         written.extend(drawn.paths);
         notes.extend(drawn.notes);
     }
@@ -147,39 +148,44 @@ pub fn write_all(
         notes.extend(saved.notes);
     }
     lines.extend(written.iter().map(|path| path.display().to_string()));
-    Ok(Written { paths: lines, notes, point_time, point_cpu })
+    Ok(OutputRecord { paths: lines, notes, point_time, point_cpu })
 }
 
-fn write_points(folder: &Path, origin: DVec3, light: &Light, monitor: &Monitor) -> Result<Option<Saved>> {
-    let Some(places) = light.places else { return Ok(None) };
-    let gather = light.solved.gather();
-    let elements = light.solved.elements();
+fn write_points(
+    folder: &Path,
+    origin: DVec3,
+    results: &RunResults,
+    monitor: &Monitor,
+) -> Result<Option<WrittenFiles>> {
+    let Some(places) = results.places else { return Ok(None) };
+    let gather = results.solved.gather();
+    let elements = results.solved.elements();
     let Some(lights) = unless_stopped(points::light(&gather, elements, places, monitor))? else {
         let note = format!("stopped: {POINTS} was not written; that of an earlier run is as it was");
-        return Ok(Some(Saved { paths: vec![], notes: vec![note] }));
+        return Ok(Some(WrittenFiles { paths: vec![], notes: vec![note] }));
     };
     let path = folder.join(POINTS);
-    points::write(&path, places, origin, &lights, &light.solved.irradiance)?;
+    points::write(&path, places, origin, &lights, &results.solved.irradiance)?;
     let lost = lights.iter().filter(|light| light.is_none()).count();
     let notes = match lost {
         0 => vec![],
         1 => vec!["1 point lies on no surface that looks its way; its line has no light".into()],
         _ => vec![format!("{lost} points lie on no surface that looks their way; their lines have no light")],
     };
-    Ok(Some(Saved { paths: vec![path], notes }))
+    Ok(Some(WrittenFiles { paths: vec![path], notes }))
 }
 
 fn write_lightmaps(
     requests: &OutputRequests,
     folder: &Path,
     scene: &Scene,
-    light: &Light,
+    results: &RunResults,
     exposure: Exposure,
     monitor: &Monitor,
-) -> Result<Option<Saved>> {
-    let (Some(options), Some(atlas)) = (&requests.lightmaps, light.atlas) else { return Ok(None) };
-    let gather = light.solved.gather();
-    let mean = mean_over_area(light.solved.elements(), &light.solved.irradiance);
+) -> Result<Option<WrittenFiles>> {
+    let (Some(options), Some(atlas)) = (&requests.lightmaps, results.atlas) else { return Ok(None) };
+    let gather = results.solved.gather();
+    let mean = mean_over_area(results.solved.elements(), &results.solved.irradiance);
     let texel_light = TexelLight::new(&gather, mean);
     let mut lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
     if options.directions {
@@ -188,7 +194,7 @@ fn write_lightmaps(
     }
     let Some(lightmap) = unless_stopped(lightmap)? else {
         let note = "stopped: no lightmaps were written; those of an earlier run are as they were";
-        return Ok(Some(Saved { paths: vec![], notes: vec![note.into()] }));
+        return Ok(Some(WrittenFiles { paths: vec![], notes: vec![note.into()] }));
     };
     lightmap::write(folder, &lightmap, options.units, exposure).map(Some)
 }
@@ -197,7 +203,7 @@ fn write_lightmaps(
 fn draw_all(
     requests: &OutputRequests,
     folder: &Path,
-    light: &Light,
+    results: &RunResults,
     canvas: &Canvas,
     exposure: Exposure,
     monitor: &Monitor,
@@ -207,7 +213,7 @@ fn draw_all(
         write_png(&path, &shade(canvas, radiosity, exposure)).map(|()| path)
     };
     let rounds =
-        if requests.pictures == Pictures::Rounds { light.solved.outcome.rounds.as_slice() } else { &[] };
+        if requests.pictures == Pictures::Rounds { results.solved.outcome.rounds.as_slice() } else { &[] };
     let shown: Vec<(usize, &[Rgb])> =
         rounds.iter().filter_map(|round| Some((round.number, round.radiosity.as_deref()?))).collect();
     monitor.begin("pictures", shown.len(), 0.0);
@@ -216,16 +222,16 @@ fn draw_all(
         monitor.advance(1);
         Ok(())
     })?;
-    let mut written: Vec<PathBuf> = vec![draw("final.png", light.solved.radiosity())?];
-    if let Some(classic) = light.classic {
+    let mut written: Vec<PathBuf> = vec![draw("final.png", results.solved.radiosity())?];
+    if let Some(classic) = results.classic {
         written.push(draw(CLASSIC, &classic.radiosity)?);
     }
     if requests.pictures == Pictures::Rounds {
         let edges = folder.join(WIREFRAME);
-        write_png(&edges, &wireframe(canvas, light.solved.elements()))?;
+        write_png(&edges, &wireframe(canvas, results.solved.elements()))?;
         written.push(edges);
         let first = shown.iter().take(FIRST_ROUNDS).map(|(_, radiosity)| *radiosity);
-        let all = first.chain([light.solved.outcome.radiosity.as_slice()]);
+        let all = first.chain([results.solved.outcome.radiosity.as_slice()]);
         let rounds = folder.join(STRIP);
         write_png(&rounds, &strip(&all.map(|b| shade(canvas, b, exposure)).collect::<Vec<_>>()))?;
         written.push(rounds);
@@ -246,20 +252,20 @@ fn write_tables(
     requests: &OutputRequests,
     folder: &Path,
     origin: DVec3,
-    light: &Light,
+    results: &RunResults,
     exposure: Exposure,
 ) -> Result<Vec<PathBuf>> {
-    let placed = &light.solved.equation.placed;
+    let placed = &results.solved.equation.placed;
     let part_names: Vec<String> =
         (0..placed.instances.len()).map(|k| placed.part_of(k).part.name.clone()).collect();
     let instance_names: Vec<String> = placed.instances.iter().map(|i| i.name.clone()).collect();
     let scene_light = SceneLight {
         world: &placed.world,
         origin,
-        reflectance: &light.solved.equation.optics.reflectance,
-        emission: &light.solved.equation.optics.emission,
-        irradiance: &light.solved.irradiance,
-        radiosity: light.solved.radiosity(),
+        reflectance: &results.solved.equation.optics.reflectance,
+        emission: &results.solved.equation.optics.emission,
+        irradiance: &results.solved.irradiance,
+        radiosity: results.solved.radiosity(),
         part_names: &part_names,
         instance_names: &instance_names,
     };

@@ -32,9 +32,9 @@ fn model(light: &SceneLight, exposure: Exposure) -> (Value, Vec<u8>) {
             continue;
         }
         let elements = &light.world.elements[range.clone()];
-        let piece = Piece::new(elements, &light.radiosity[range], exposure);
+        let triangles = InstanceTriangles::new(elements, &light.radiosity[range], exposure);
         nodes.push(json!({
-            "name": light.instance_names[instance], "mesh": meshes.len(), "translation": piece.origin.to_array(),
+            "name": light.instance_names[instance], "mesh": meshes.len(), "translation": triangles.origin.to_array(),
         }));
         meshes.push(json!({
             "name": light.part_names[instance],
@@ -42,8 +42,8 @@ fn model(light: &SceneLight, exposure: Exposure) -> (Value, Vec<u8>) {
                 "attributes": { "POSITION": accessors.len(), "COLOR_0": accessors.len() + 1 }, "material": 0,
             }],
         }));
-        accessors.extend(piece.accessors(vertices.len()));
-        piece.append_to(&mut vertices);
+        accessors.extend(triangles.accessors(vertices.len()));
+        triangles.append_to(&mut vertices);
     }
     let roots = under_origin(&mut nodes, light.origin);
     (document(nodes, roots, meshes, accessors, vertices.len()), vertices)
@@ -76,7 +76,7 @@ fn document(
 }
 
 /// The triangles of one instance.
-struct Piece {
+struct InstanceTriangles {
     /// Where its node stands, metres. Positions are relative to it, so that they keep their digits far from the scene's
     /// origin; it is exact in f32 itself.
     origin: Vec3,
@@ -84,7 +84,7 @@ struct Piece {
     vertices: Vec<[Vec3; 2]>,
 }
 
-impl Piece {
+impl InstanceTriangles {
     fn new(elements: &[Element], radiosity: &[Rgb], exposure: Exposure) -> Self {
         let around = Aabb::around(elements.iter().flat_map(|element| element.corners.as_slice()));
         let origin = around.low.as_vec3();
@@ -96,7 +96,7 @@ impl Piece {
         Self { origin, vertices }
     }
 
-    /// The accessors of positions and colours, in a buffer where this piece starts at `start`.
+    /// The accessors of positions and colours, in a buffer where this triangles starts at `start`.
     fn accessors(&self, start: usize) -> [Value; 2] {
         let positions = || self.vertices.iter().map(|vertex| vertex[0]);
         let accessor = |offset: usize| {

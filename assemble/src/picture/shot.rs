@@ -1,6 +1,7 @@
 //! A picture that somebody asks for: from this camera, with flat or smooth light, and how far it is from a reference. In goes a
 //! [`Shot`] and the light of a scene; out come PNG files and what is to be said of them.
 
+use crate::output_file::WrittenFiles;
 use crate::picture::camera::View;
 use crate::picture::canvas::Canvas;
 use crate::picture::difference::{Difference, Reference};
@@ -72,15 +73,6 @@ pub enum Shading {
     Smooth,
 }
 
-/// What was drawn.
-#[derive(Debug)]
-pub struct Drawn {
-    /// The pictures.
-    pub paths: Vec<PathBuf>,
-    /// What a person should know of them.
-    pub notes: Vec<String>,
-}
-
 /// Draw a shot into `folder`. `against` is what `shot` names, read.
 pub fn draw(
     shot: &Shot,
@@ -88,7 +80,7 @@ pub fn draw(
     scene: &Scene,
     solved: &Solved,
     folder: &Path,
-) -> Result<Drawn> {
+) -> Result<WrittenFiles> {
     let equation = &solved.equation;
     let elements = solved.elements();
     let index = RayIndex::new(elements);
@@ -112,7 +104,7 @@ pub fn draw(
     };
     let path = folder.join("render.png");
     write_png(&path, &picture)?;
-    let mut drawn = Drawn {
+    let mut drawn = WrittenFiles {
         paths: vec![path],
         notes: vec![format!(
             "render.png shows radiance times {:.4} m² sr/W, {:+.1} stops from what suits the scene, in sRGB; above 0.8 it bends \

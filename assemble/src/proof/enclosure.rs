@@ -16,36 +16,36 @@ use rayon::prelude::*;
 const SWEEPS: (f64, usize) = (1e-2, 200);
 
 /// Whether entries may stand for clusters, rounded to f32.
-pub fn is_compressed(nodes: &[InstanceSystem]) -> bool {
-    nodes.iter().any(|node| node.self_block.precision() == Precision::Single)
+pub fn is_compressed(systems: &[InstanceSystem]) -> bool {
+    systems.iter().any(|system| system.self_block.precision() == Precision::Single)
 }
 
 /// The form factors of a scene as they are kept.
 #[derive(Debug)]
-pub struct Kept<'a> {
-    nodes: &'a [InstanceSystem<'a>],
+pub struct StoredFormFactors<'a> {
+    systems: &'a [InstanceSystem<'a>],
 }
 
 /// What a row's entries may be off by because they are kept as f32, and what it may miss, all entries together. The entries
 /// of a row sum to 1 at most.
 pub const OFF: f64 = SINGLE_ROUNDING + MISSED;
 
-impl<'a> Kept<'a> {
+impl<'a> StoredFormFactors<'a> {
     /// The form factors that an exchange used.
-    pub fn of(nodes: &'a [InstanceSystem<'a>]) -> Self {
-        Self { nodes }
+    pub fn of(systems: &'a [InstanceSystem<'a>]) -> Self {
+        Self { systems }
     }
 
     /// How far the light that clusters reflect, each as one radiosity, can be from what their elements reflect, W/m²: a
     /// cluster of mean radiosity B̄ stands for Σ_j F_ij B_j = F_iC B̄ + Σ_j F_ij (B_j − B̄), and the second term is at most
     /// F_iC max_j |B_j − B̄|. It adds up what mostly cancels.
     pub fn spread(&self, radiosity: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
-        let spreads = |(node, b): (&InstanceSystem, &Vec<Rgb>)| {
+        let spreads = |(system, b): (&InstanceSystem, &Vec<Rgb>)| {
             let mut spreads = Vec::new();
-            node.clusters.append_spreads(&node.clusters.means(b), &mut spreads);
+            system.clusters.append_spreads(&system.clusters.means(b), &mut spreads);
             spreads
         };
-        let spreads: Vec<Vec<Rgb>> = self.nodes.iter().zip(radiosity).map(spreads).collect();
+        let spreads: Vec<Vec<Rgb>> = self.systems.iter().zip(radiosity).map(spreads).collect();
         // What an entry is off by goes with the mean and with the spread; neither is above the cluster's brightest.
         let twice: Vec<Vec<Rgb>> = radiosity.iter().map(|b| b.iter().map(|&b| b * 2.0).collect()).collect();
         self.reflected(&spreads, &twice)
@@ -77,7 +77,7 @@ impl<'a> Kept<'a> {
     /// ρF w at most, W/m², for w ≥ 0.
     fn reflected_at_most(&self, w: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
         let maxima: Vec<Vec<Rgb>> =
-            self.nodes.par_iter().zip(w).map(|(node, w)| maxima(node.clusters, w)).collect();
+            self.systems.par_iter().zip(w).map(|(system, w)| maxima(system.clusters, w)).collect();
         self.reflected(&maxima, w)
     }
 
@@ -86,15 +86,15 @@ impl<'a> Kept<'a> {
     fn reflected(&self, values: &[Vec<Rgb>], rounded: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
         let (all, elements) = (values.concat(), rounded.concat());
         let most = largest(&elements);
-        let of = |(k, node): (usize, &InstanceSystem)| -> Vec<Rgb> {
-            let (own, others) = (apply(node.self_block, &values[k]), apply(node.coupling, &all));
+        let of = |(k, system): (usize, &InstanceSystem)| -> Vec<Rgb> {
+            let (own, others) = (apply(system.self_block, &values[k]), apply(system.coupling, &all));
             let row = |i: usize| {
                 let off = most * OFF;
-                node.optics.reflectance[i] * (own[i] + others[i] + off)
+                system.optics.reflectance[i] * (own[i] + others[i] + off)
             };
             (0..own.len()).map(row).collect()
         };
-        self.nodes.par_iter().enumerate().map(of).collect()
+        self.systems.par_iter().enumerate().map(of).collect()
     }
 }
 

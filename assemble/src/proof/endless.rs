@@ -1,7 +1,7 @@
 //! Light without end: a closed group of elements that reflect everything and emit has no equilibrium.
 
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::proof::enclosure::{OFF, is_compressed};
 use equilux_bake::equilibrium::endless::endless_light;
 use equilux_formats::{Error, Optics, Result};
@@ -9,24 +9,24 @@ use std::path::Path;
 
 /// Refuse a scene in which some group of elements keeps all its light for ever and gets more.
 pub fn refuse_endless_light(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     optics: &Optics,
     file: &Path,
 ) -> Result<()> {
-    let place: Vec<(usize, usize)> = nodes
+    let place: Vec<(usize, usize)> = systems
         .iter()
         .enumerate()
         .flat_map(|(k, n)| (0..n.self_block.receivers()).map(move |i| (k, i)))
         .collect();
     // What a row may lack counts as staying: clusters must not open a closed scene.
-    let lack = is_compressed(nodes).then_some(OFF);
+    let lack = is_compressed(systems).then_some(OFF);
     let rows = |element: usize| {
         let (k, i) = place[element];
         let first = placed.world.nodes_of(k).start;
-        let own = nodes[k].self_block.row(i).map(|(j, f)| (j + first, f));
+        let own = systems[k].self_block.row(i).map(|(j, f)| (j + first, f));
         let mut row: Vec<(usize, f64)> = lack.map(|lack| (element, lack)).into_iter().collect();
-        for (node, value) in own.chain(nodes[k].coupling.row(i)) {
+        for (node, value) in own.chain(systems[k].coupling.row(i)) {
             spread(placed, node, &mut |element, share| row.push((element, value * share)));
         }
         row
@@ -45,7 +45,7 @@ pub fn refuse_endless_light(
 }
 
 /// Call `visit` with every element of a node of the scene and its share of the node's area.
-fn spread(placed: &Placed, node: usize, visit: &mut impl FnMut(usize, f64)) {
+fn spread(placed: &PlacedParts, node: usize, visit: &mut impl FnMut(usize, f64)) {
     let instance = placed.world.instance_of_node(node);
     let (nodes, elements) = (placed.world.nodes_of(instance), placed.world.elements_of(instance));
     let clusters = &placed.part_of(instance).part.geometry.clusters;

@@ -1,9 +1,9 @@
 //! What an answer that was found with clusters misses where rows are exact: r_i = E_i + ρ_i Σ_j F_ij B_j − B_i, every j an
 //! element. A few rows tell how large r is, all of them bound the error.
 
-use super::sample::Chosen;
+use super::sample::ReceiverCluster;
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::apply;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, block};
@@ -30,14 +30,14 @@ pub struct Residuals {
 /// Compute exact rows for the chosen receivers and what `radiosity` (one vector an instance) misses there. Fails if
 /// the monitor was stopped.
 pub fn residuals(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     radiosity: &[Vec<Rgb>],
-    chosen: &[Chosen],
+    chosen: &[ReceiverCluster],
     monitor: &Monitor,
 ) -> Result<Residuals> {
     let mut all = Vec::new();
-    nodes.iter().zip(radiosity).for_each(|(node, b)| node.clusters.append_means(b, &mut all));
+    systems.iter().zip(radiosity).for_each(|(system, b)| system.clusters.append_means(b, &mut all));
     let count: usize = chosen.iter().map(|cluster| cluster.receivers.len()).sum();
     monitor.begin("exact rows", count, ROWS_PER_EXACT_ROW * count as f64);
     let mut residuals = Residuals { values: vec![], form_factors: 0, time: Duration::ZERO };
@@ -45,11 +45,11 @@ pub fn residuals(
         let (rows, time) = exact_rows(placed, batch, monitor)?;
         residuals.form_factors += rows.stored();
         residuals.time += time;
-        let node = &nodes[batch[0].instance];
+        let system = &systems[batch[0].instance];
         let own = &radiosity[batch[0].instance];
         let irradiance = apply(&rows, &all);
         let missed = |i: usize| {
-            let right = node.optics.emission[i] + node.optics.reflectance[i] * irradiance[i];
+            let right = system.optics.emission[i] + system.optics.reflectance[i] * irradiance[i];
             right - own[i]
         };
         residuals.values.extend(batch.iter().map(|cluster| cluster.receivers.clone().map(missed).collect()));
@@ -58,7 +58,7 @@ pub fn residuals(
 }
 
 /// Runs of clusters of one instance, few enough rows to be kept at once.
-fn batches(chosen: &[Chosen]) -> Vec<&[Chosen]> {
+fn batches(chosen: &[ReceiverCluster]) -> Vec<&[ReceiverCluster]> {
     let mut batches = Vec::new();
     for own in chosen.chunk_by(|a, b| a.instance == b.instance) {
         let mut rows = 0;
@@ -76,7 +76,11 @@ fn batches(chosen: &[Chosen]) -> Vec<&[Chosen]> {
 }
 
 /// The rows of clusters of one instance; all other rows of the instance are empty.
-fn exact_rows(placed: &Placed, clusters: &[Chosen], monitor: &Monitor) -> Result<(Rows, Duration)> {
+fn exact_rows(
+    placed: &PlacedParts,
+    clusters: &[ReceiverCluster],
+    monitor: &Monitor,
+) -> Result<(Rows, Duration)> {
     let world = &placed.world;
     let instance = clusters[0].instance;
     // For a receiver that sees everything already nothing is searched.

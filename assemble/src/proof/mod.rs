@@ -10,13 +10,13 @@ pub mod sample;
 use crate::exchange::outcome::Outcome;
 use crate::exchange::system::InstanceSystem;
 use crate::exchange::system::residual;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::statistics::mean_over_area;
-use enclosure::{Kept, is_compressed};
+use enclosure::{StoredFormFactors, is_compressed};
 use equilux_bake::monitor::Monitor;
 use equilux_formats::Rgb;
 use exact_rows::{Residuals, residuals};
-use sample::{Chosen, ExactRows, choose};
+use sample::{ExactRows, ReceiverCluster, choose};
 use std::time::Duration;
 
 /// What is proved and what was measured. The exact answer is that of the matrix in which every entry is for one element.
@@ -27,12 +27,12 @@ pub struct Proof {
     /// What the spread of radiosity within clusters alone proves, W/m², one row an element.
     pub spread: Vec<Rgb>,
     /// What exact rows say, if there are any.
-    pub measured: Option<Measured>,
+    pub measured: Option<ResidualStatistics>,
 }
 
 /// The residual of the answer where rows are exact.
 #[derive(Debug)]
-pub struct Measured {
+pub struct ResidualStatistics {
     /// Number of rows; if they are all, they are what the bound is proved from.
     pub rows: usize,
     /// Largest residual, W/m².
@@ -53,26 +53,26 @@ pub struct Measured {
 /// Prove and measure what there is to know about the answer; none if every entry is for one element and kept in full, for
 /// then the exchange's own bound says it all.
 pub fn prove(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     outcome: &Outcome,
     wanted: ExactRows,
     monitor: &Monitor,
 ) -> Option<Proof> {
-    if !is_compressed(nodes) {
+    if !is_compressed(systems) {
         return None;
     }
     let (radiosity, irradiance) = (placed.split(&outcome.radiosity), placed.split(&outcome.irradiance));
-    let kept = Kept::of(nodes);
-    let solved = residual(nodes, &radiosity, &irradiance);
+    let kept = StoredFormFactors::of(systems);
+    let solved = residual(systems, &radiosity, &irradiance);
     let spread = kept.enclose(&sums_of_sizes(&solved, &kept.spread(&radiosity))).concat();
 
-    let chosen = choose(placed, nodes, wanted);
+    let chosen = choose(placed, systems, wanted);
     // Without exact rows, because none are wanted or the run was stopped, the spread is all that proves anything.
     let found =
-        if chosen.is_empty() { None } else { residuals(placed, nodes, &radiosity, &chosen, monitor).ok() };
+        if chosen.is_empty() { None } else { residuals(placed, systems, &radiosity, &chosen, monitor).ok() };
     let Some(found) = found else { return Some(Proof { bound: spread.clone(), spread, measured: None }) };
-    let measured = measured(placed, nodes, outcome, &chosen, &found);
+    let measured = measured(placed, systems, outcome, &chosen, &found);
     let bound = if measured.rows == placed.world.elements.len() {
         let exact = kept.enclose(&placed.split(&sizes(&found.values.concat()))).concat();
         spread.iter().zip(exact).map(|(&a, b)| Rgb::from_fn(|c| a[c].min(b[c]))).collect()
@@ -83,20 +83,20 @@ pub fn prove(
 }
 
 fn measured(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     outcome: &Outcome,
-    chosen: &[Chosen],
+    chosen: &[ReceiverCluster],
     found: &Residuals,
-) -> Measured {
-    let reflectance: Vec<Rgb> = nodes.iter().flat_map(|node| node.optics.reflectance.clone()).collect();
+) -> ResidualStatistics {
+    let reflectance: Vec<Rgb> = systems.iter().flat_map(|system| system.optics.reflectance.clone()).collect();
     let [mean, rho] =
         [&outcome.radiosity, &reflectance].map(|values| mean_over_area(&placed.world.elements, values));
     let rms = rms(placed, chosen, &found.values);
     let largest = equilux_bake::equilibrium::largest(&found.values.concat());
     let worst = |of: &dyn Fn(usize) -> f64| (0..3).map(of).fold(0.0, f64::max);
     let over = |value: f64, unit: f64| if value == 0.0 { 0.0 } else { value / unit };
-    Measured {
+    ResidualStatistics {
         rows: chosen.iter().map(|cluster| cluster.receivers.len()).sum(),
         largest: worst(&|c| largest[c]),
         largest_over_mean: worst(&|c| over(largest[c], mean[c])),
@@ -108,7 +108,7 @@ fn measured(
 }
 
 /// Root mean square over the scene's area: each cluster's own mean square over its area, for the area it speaks for.
-fn rms(placed: &Placed, chosen: &[Chosen], values: &[Vec<Rgb>]) -> Rgb {
+fn rms(placed: &PlacedParts, chosen: &[ReceiverCluster], values: &[Vec<Rgb>]) -> Rgb {
     let (mut squares, mut spoken) = (Rgb::BLACK, 0.0);
     for (cluster, values) in chosen.iter().zip(values) {
         let elements =

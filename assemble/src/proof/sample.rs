@@ -5,7 +5,7 @@
 //! order (systematic sampling, size-proportional: Cochran 1977, §11.9): large faces are drawn more often than small ones.
 
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use std::ops::Range;
 
 /// How many receivers get exact rows.
@@ -26,7 +26,7 @@ impl Default for ExactRows {
 
 /// A cluster of receivers.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chosen {
+pub struct ReceiverCluster {
     /// The instance.
     pub instance: usize,
     /// Its elements in the cluster, numbered within the instance.
@@ -36,8 +36,8 @@ pub struct Chosen {
 }
 
 /// The clusters whose rows are to be exact, in order.
-pub fn choose(placed: &Placed, nodes: &[InstanceSystem], wanted: ExactRows) -> Vec<Chosen> {
-    let all: Vec<Chosen> = (0..nodes.len()).flat_map(|k| clusters(placed, nodes, k)).collect();
+pub fn choose(placed: &PlacedParts, systems: &[InstanceSystem], wanted: ExactRows) -> Vec<ReceiverCluster> {
+    let all: Vec<ReceiverCluster> = (0..systems.len()).flat_map(|k| clusters(placed, systems, k)).collect();
     let elements = placed.world.elements.len();
     let rows = match wanted {
         ExactRows::About(0) => return vec![],
@@ -57,23 +57,23 @@ pub fn choose(placed: &Placed, nodes: &[InstanceSystem], wanted: ExactRows) -> V
         draw(&own, &all, area / share).for_each(|cluster| speaks_for[cluster] += area / share);
     }
     let spoken = all.into_iter().zip(speaks_for).filter(|&(_, area)| area > 0.0);
-    spoken.map(|(cluster, area)| Chosen { area, ..cluster }).collect()
+    spoken.map(|(cluster, area)| ReceiverCluster { area, ..cluster }).collect()
 }
 
 /// The clusters of an instance's receivers, each with its own area.
-fn clusters(placed: &Placed, nodes: &[InstanceSystem], instance: usize) -> Vec<Chosen> {
+fn clusters(placed: &PlacedParts, systems: &[InstanceSystem], instance: usize) -> Vec<ReceiverCluster> {
     let elements = &placed.world.elements[placed.world.elements_of(instance)];
-    let coupling = nodes[instance].coupling;
+    let coupling = systems[instance].coupling;
     let cluster = |group: usize| {
         let receivers = coupling.receivers_of(group);
         let area = elements[receivers.clone()].iter().map(|e| e.area).sum();
-        Chosen { instance, receivers, area }
+        ReceiverCluster { instance, receivers, area }
     };
     (0..coupling.groups()).map(cluster).collect()
 }
 
 /// The clusters of `own` that lie half a `step` of area from the beginning, one and a half, and so on.
-fn draw<'a>(own: &'a [usize], all: &'a [Chosen], step: f64) -> impl Iterator<Item = usize> + 'a {
+fn draw<'a>(own: &'a [usize], all: &'a [ReceiverCluster], step: f64) -> impl Iterator<Item = usize> + 'a {
     let (mut passed, mut next) = (0.0, step / 2.0);
     own.iter().flat_map(move |&cluster| {
         passed += all[cluster].area;

@@ -2,7 +2,7 @@
 //! the manifests that make the keys.
 
 use crate::equation::coupling::Coupled;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::oven::Baked;
 use equilux_bake::oven::cached::Origin;
 use serde::Serialize;
@@ -69,14 +69,14 @@ impl Fate {
 const NAMED: usize = 4;
 
 /// The sentences, parts first.
-pub fn explained(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
+pub fn explained(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<String> {
     let parts =
         placed.parts.iter().enumerate().map(|(number, baked)| part_line(&part(placed, number, baked)));
     let blocks = (0..coupled.len()).flat_map(|k| blocks(placed, k, &coupled[k]));
     parts.chain(blocks).collect()
 }
 
-fn part(placed: &Placed, number: usize, baked: &Baked) -> PartFate {
+fn part(placed: &PlacedParts, number: usize, baked: &Baked) -> PartFate {
     PartFate {
         name: baked.part.name.clone(),
         elements: baked.part.geometry.elements.len(),
@@ -87,7 +87,7 @@ fn part(placed: &Placed, number: usize, baked: &Baked) -> PartFate {
     }
 }
 
-fn blocks(placed: &Placed, k: usize, coupled: &Coupled) -> Vec<String> {
+fn blocks(placed: &PlacedParts, k: usize, coupled: &Coupled) -> Vec<String> {
     let name = |k: usize| placed.instances[k].name.clone();
     let instance = InstanceFate {
         name: name(k),
@@ -115,7 +115,7 @@ fn unseen_clause(unseen: &[String]) -> String {
 }
 
 /// Which instances a block's receivers see anything of.
-pub fn seen_instances(placed: &Placed, coupled: &Coupled) -> Vec<bool> {
+pub fn seen_instances(placed: &PlacedParts, coupled: &Coupled) -> Vec<bool> {
     let mut seen = vec![false; placed.instances.len()];
     for sender in coupled.coupling.senders_seen() {
         seen[placed.world.instance_of_node(sender)] = true;

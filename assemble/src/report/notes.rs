@@ -4,19 +4,19 @@ use crate::equation::coupling::Coupled;
 use crate::equation::interpenetration;
 use crate::exchange::outcome::Outcome;
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::report::checks::checks;
 
 /// More sentences of one kind than this are made one.
 const FEW: usize = 4;
 
 /// Sentences that call for action.
-pub fn notes(placed: &Placed, systems: &[InstanceSystem], outcome: &Outcome) -> Vec<String> {
+pub fn notes(placed: &PlacedParts, systems: &[InstanceSystem], outcome: &Outcome) -> Vec<String> {
     interpenetration::notes(placed).into_iter().chain(checks(placed, systems, outcome)).collect()
 }
 
 /// What stands inside what: a sentence each, or, of more than a few, how many and the first of them.
-pub fn remarks(placed: &Placed, coupled: &[Coupled]) -> Vec<String> {
+pub fn remarks(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<String> {
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let corrected = coupled.iter().enumerate().filter_map(|(k, own)| Some((k, own.corrected.as_ref()?)));
     let inside: Vec<(String, bool)> = corrected

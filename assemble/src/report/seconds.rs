@@ -2,7 +2,7 @@
 
 use crate::equation::coupling::Coupled;
 use crate::exchange::step_times::StepTimes;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
@@ -49,7 +49,7 @@ pub struct Seconds {
 
 /// Steps 1–8 and T₁, T₂, T₃. Steps 1–4 are summed over threads; what came from the cache took nothing. The first
 /// instance is the paper's part 1, all others together its part 2.
-pub fn seconds(placed: &Placed, coupled: &[Coupled], times: &StepTimes) -> Seconds {
+pub fn seconds(placed: &PlacedParts, coupled: &[Coupled], times: &StepTimes) -> Seconds {
     let mut baked = vec![false; placed.parts.len()];
     let own: Vec<f64> = (0..coupled.len())
         .map(|k| {

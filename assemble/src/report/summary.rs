@@ -6,8 +6,8 @@ use crate::equation::coupling::Coupled;
 use crate::exchange::outcome::Outcome;
 use crate::exchange::outcome::Round;
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
-use crate::proof::{Measured, Proof};
+use crate::placed_parts::PlacedParts;
+use crate::proof::{Proof, ResidualStatistics};
 use crate::report::fates::seen_instances;
 use crate::report::notes::{notes, remarks};
 use crate::report::process::peak_rss;
@@ -32,9 +32,9 @@ pub const COARSE_SPACES: &str = "coarse spaces between parts that return little 
 /// Own blocks of instances that another instance of the same part has.
 pub const SHARED: &str = "own blocks that equal parts share";
 
-/// The results of a run.
+/// The results of a sources.
 #[derive(Debug, Clone, Copy)]
-pub struct Run<'a> {
+pub struct ReportSources<'a> {
     /// The equation that was solved.
     pub equation: &'a Equation,
     /// The equation of each instance.
@@ -48,22 +48,22 @@ pub struct Run<'a> {
 }
 
 /// All that the results tell; names, files, and what the system tells are left to the caller.
-pub fn summary(run: &Run) -> Report {
-    let Run { equation, systems, outcome, .. } = *run;
+pub fn summary(sources: &ReportSources) -> Report {
+    let ReportSources { equation, systems, outcome, .. } = *sources;
     let Equation { placed, coupled, .. } = equation;
     let elements = placed.world.elements.len();
-    let error = error(run);
+    let error = error(sources);
     Report {
         scene: String::new(),
         elements,
         parts: placed.parts.iter().map(part_report).collect(),
         instances: placed.instances.len(),
         element_size: String::new(),
-        blocks: blocks(run),
+        blocks: blocks(sources),
         form_factors_stored: systems.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
         form_factors_computed: form_factors_computed(placed, coupled),
         seconds: seconds(placed, coupled, &outcome.times),
-        rounds: rounds(run),
+        rounds: rounds(sources),
         coarse_unknowns: outcome.coarse_unknowns,
         groups: outcome.groups,
         converged: outcome.converged,
@@ -72,7 +72,7 @@ pub fn summary(run: &Run) -> Report {
         energy: outcome.convergence.energy,
         column_sums: outcome.column_sums,
         row_sum_defect: row_sum_defect(systems),
-        verify: run.classic.map(|classic| verification(placed, classic, outcome)),
+        verify: sources.classic.map(|classic| verification(placed, classic, outcome)),
         explained: vec![],
         advice: None,
         notes: notes(placed, systems, outcome),
@@ -92,8 +92,8 @@ fn part_report(baked: &Baked) -> PartReport {
     }
 }
 
-fn rounds(run: &Run) -> Vec<RoundReport> {
-    run.outcome.rounds.iter().map(|round| round_report(round, run.classic)).collect()
+fn rounds(sources: &ReportSources) -> Vec<RoundReport> {
+    sources.outcome.rounds.iter().map(|round| round_report(round, sources.classic)).collect()
 }
 
 fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
@@ -109,11 +109,11 @@ fn round_report(round: &Round, classic: Option<&Classic>) -> RoundReport {
     }
 }
 
-fn error(run: &Run) -> ErrorReport {
-    let (placed, radiosity) = (&run.equation.placed, &run.outcome.radiosity);
+fn error(sources: &ReportSources) -> ErrorReport {
+    let (placed, radiosity) = (&sources.equation.placed, &sources.outcome.radiosity);
     let most = |bound: &[Rgb]| largest(bound).brightest();
-    let Some(proof) = run.proof else {
-        let proved = run.outcome.convergence.error_bound;
+    let Some(proof) = sources.proof else {
+        let proved = sources.outcome.convergence.error_bound;
         let everywhere = vec![Rgb::splat(proved); radiosity.len()];
         let proved_rms = rms_over_mean(&placed.world.elements, &everywhere, radiosity);
         return ErrorReport { proved, proved_rms, proved_from: "rounds", spread: None, exact_rows: None };
@@ -129,7 +129,7 @@ fn error(run: &Run) -> ErrorReport {
     }
 }
 
-fn exact_rows(measured: &Measured) -> ExactRowsReport {
+fn exact_rows(measured: &ResidualStatistics) -> ExactRowsReport {
     ExactRowsReport {
         rows: measured.rows,
         residual_max: measured.largest,
@@ -141,8 +141,8 @@ fn exact_rows(measured: &Measured) -> ExactRowsReport {
     }
 }
 
-fn blocks(run: &Run) -> Blocks {
-    let Equation { placed, coupled, .. } = run.equation;
+fn blocks(sources: &ReportSources) -> Blocks {
+    let Equation { placed, coupled, .. } = sources.equation;
     let baked = placed.parts.iter().filter(|part| !part.form_factors.is_reused()).count();
     let corrected = coupled.iter().filter(|c| c.corrected.is_some()).count();
     let mut blocks = Blocks {
@@ -158,13 +158,13 @@ fn blocks(run: &Run) -> Blocks {
         let seen = seen.iter().filter(|&&s| s).count();
         if own.origin.is_reused() { blocks.coupling_reused += seen } else { blocks.coupling_computed += seen }
     }
-    blocks.coupling_left_out = left_out(unseen, run);
+    blocks.coupling_left_out = left_out(unseen, sources);
     blocks
 }
 
-fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
-    let spared = run.outcome.spared;
-    let shared = run.equation.placed.instances.len() - run.equation.placed.parts.len();
+fn left_out(unseen: usize, sources: &ReportSources) -> BTreeMap<String, usize> {
+    let spared = sources.outcome.spared;
+    let shared = sources.equation.placed.instances.len() - sources.equation.placed.parts.len();
     let counts = [
         (UNSEEN, unseen),
         (BLACK_ROWS, spared.black_rows),
@@ -175,7 +175,7 @@ fn left_out(unseen: usize, run: &Run) -> BTreeMap<String, usize> {
     counts.into_iter().filter(|&(_, count)| count > 0).map(|(what, count)| (what.into(), count)).collect()
 }
 
-fn form_factors_computed(placed: &Placed, coupled: &[Coupled]) -> usize {
+fn form_factors_computed(placed: &PlacedParts, coupled: &[Coupled]) -> usize {
     let own = placed.parts.iter().filter(|p| !p.form_factors.is_reused()).map(|p| p.part.self_block.stored());
     let corrected = coupled.iter().filter_map(|own| own.corrected.as_ref()).map(|block| block.computed);
     let coupling = coupled.iter().map(|own| own.computed);
@@ -192,7 +192,7 @@ fn memory(systems: &[InstanceSystem], elements: usize) -> Bytes {
     }
 }
 
-fn verification(placed: &Placed, classic: &Classic, outcome: &Outcome) -> Verify {
+fn verification(placed: &PlacedParts, classic: &Classic, outcome: &Outcome) -> Verify {
     Verify {
         max_rel_diff: largest_difference(&outcome.radiosity, &classic.radiosity),
         rms_rel_diff: mean_difference(&placed.world.elements, &outcome.radiosity, &classic.radiosity),

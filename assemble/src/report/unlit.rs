@@ -1,7 +1,7 @@
 //! Lamps that light nothing: results of a run → sentences that name them.
 
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::report::light_notes::{NAMED, more};
 use equilux_bake::tidy::enclosed_lamps::enclosed_lamps;
 use equilux_formats::Scene;
@@ -11,12 +11,12 @@ use equilux_formats::Scene;
 pub fn unlit_notes(
     scene: &Scene,
     unlit: &[String],
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
 ) -> Vec<String> {
     let enclosed = enclosed_lamps(scene);
     let is_open = |name: &&String| !enclosed.iter().any(|enclosed| enclosed.lamp == **name);
-    let unseen = unseen(placed, nodes);
+    let unseen = unseen(placed, systems);
     let unlit: Vec<&String> = unlit.iter().chain(&unseen).filter(is_open).collect();
     let sentences = unlit.iter().take(NAMED).map(|name| {
         format!(
@@ -28,19 +28,19 @@ pub fn unlit_notes(
 }
 
 /// The names of the instances that emit and that no element sees.
-fn unseen(placed: &Placed, nodes: &[InstanceSystem]) -> Vec<String> {
+fn unseen(placed: &PlacedParts, systems: &[InstanceSystem]) -> Vec<String> {
     let world = &placed.world;
     let mut emits: Vec<bool> = Vec::with_capacity(world.nodes.len());
-    for (instance, node) in nodes.iter().enumerate() {
-        let means = node.clusters.means(&placed.optics_of(instance).emission);
+    for (instance, system) in systems.iter().enumerate() {
+        let means = system.clusters.means(&placed.optics_of(instance).emission);
         emits.extend(means.iter().map(|emission| *emission != [0.0; 3]));
     }
     let mut unseen: Vec<bool> =
-        (0..nodes.len()).map(|instance| world.nodes_of(instance).any(|node| emits[node])).collect();
-    for (instance, node) in nodes.iter().enumerate() {
+        (0..systems.len()).map(|instance| world.nodes_of(instance).any(|node| emits[node])).collect();
+    for (instance, system) in systems.iter().enumerate() {
         let first = world.nodes_of(instance).start;
-        let own = node.self_block.senders_seen().map(|sender| first + sender);
-        for sender in own.chain(node.coupling.senders_seen()).filter(|&sender| emits[sender]) {
+        let own = system.self_block.senders_seen().map(|sender| first + sender);
+        for sender in own.chain(system.coupling.senders_seen()).filter(|&sender| emits[sender]) {
             unseen[world.instance_of_node(sender)] = false;
         }
     }

@@ -10,13 +10,13 @@ pub mod watch;
 use crate::equation::observer::Observer;
 use crate::exchange::listener::Unobserved;
 use crate::lightmap::atlas::Atlas;
-use crate::outputs::{Light, RESULT, Written, write_all};
+use crate::outputs::{OutputRecord, RESULT, RunResults, write_all};
 use crate::proof::prove;
 use crate::report::Report;
 use crate::report::fates::explained;
 use crate::report::light_notes::light_notes;
 use crate::report::process::{cpu_seconds, peak_rss};
-use crate::report::summary::{HIDDEN_SHELLS, Run, summary};
+use crate::report::summary::{HIDDEN_SHELLS, ReportSources, summary};
 use crate::report::unlit::unlit_notes;
 use crate::solve::solve_prepared;
 use crate::verify::{Classic, classic};
@@ -59,22 +59,27 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let classic = if requests.verify { compare()? } else { None };
     observer.settled(outcome, &solved.irradiance);
 
-    let light = Light {
+    let results = RunResults {
         solved: &solved,
         classic: classic.as_ref(),
         atlas: atlas.as_ref(),
         places,
         against: against.as_ref(),
     };
-    let Written { paths: outputs, notes, point_time, point_cpu } =
-        write_all(requests, &scene, &light, monitor)?;
+    let OutputRecord { paths: outputs, notes, point_time, point_cpu } =
+        write_all(requests, &scene, &results, monitor)?;
     if let Some(path) = &requests.depfile {
         depfile::write(path, &requests.folder.join(&scene.name).join(RESULT), &scene.sources)?;
     }
     let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
-    let results =
-        Run { equation, systems: &systems, outcome, proof: proof.as_ref(), classic: classic.as_ref() };
-    let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&results) };
+    let sources = ReportSources {
+        equation,
+        systems: &systems,
+        outcome,
+        proof: proof.as_ref(),
+        classic: classic.as_ref(),
+    };
+    let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&sources) };
     report.blocks.leave_out(HIDDEN_SHELLS, scene.hidden_shells);
     report.bytes.peak_rss = peak;
     report.form_factors_computed += equation.direct.computed;

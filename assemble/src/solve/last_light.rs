@@ -1,12 +1,12 @@
 //! The light of the last run of a scene, to start from instead of darkness. Any start leads to the same light; one near to
 //! it takes fewer rounds.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_formats::{Lookup, Manifest, Result, Rgb, Solution, SolvedInstance, Store};
 use std::path::Path;
 
 /// The last light of every instance; dark where it is new or of another shape. None if nothing is known.
-pub fn last_light(placed: &Placed, store: &Store, file: &Path) -> Option<Vec<Vec<Rgb>>> {
+pub fn last_light(placed: &PlacedParts, store: &Store, file: &Path) -> Option<Vec<Vec<Rgb>>> {
     let Lookup::Found(last) = store.load::<Solution>(&manifest(file).key()) else { return None };
     let of = |k: usize| {
         let dark = || vec![Rgb::BLACK; placed.world.elements_of(k).len()];
@@ -17,7 +17,7 @@ pub fn last_light(placed: &Placed, store: &Store, file: &Path) -> Option<Vec<Vec
 }
 
 /// Keep the light for the next run.
-pub fn keep(placed: &Placed, store: &Store, file: &Path, radiosity: &[Rgb]) -> Result<()> {
+pub fn keep(placed: &PlacedParts, store: &Store, file: &Path, radiosity: &[Rgb]) -> Result<()> {
     let instance = |k: usize| SolvedInstance {
         name: placed.instances[k].name.clone(),
         part: placed.part_of(k).key,

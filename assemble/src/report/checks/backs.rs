@@ -1,7 +1,7 @@
 //! One-sided surfaces that show most of the scene their black backs: their normals probably point the wrong way.
 
 use super::view::View;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_formats::{Element, MaterialId};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -28,7 +28,7 @@ struct Sightings {
 }
 
 /// A sentence for each of the first few surfaces that show their backs, most seen first.
-pub(super) fn notes(placed: &Placed, view: &View) -> Vec<String> {
+pub(super) fn notes(placed: &PlacedParts, view: &View) -> Vec<String> {
     let sightings = sightings(placed, view);
     let least = SHARE * view.hits.len() as f64;
     let is_wrong = |seen: &Sightings| seen.backs as f64 >= least && seen.backs >= OFTENER * seen.fronts;
@@ -48,7 +48,7 @@ pub(super) fn notes(placed: &Placed, view: &View) -> Vec<String> {
     notes
 }
 
-fn sightings(placed: &Placed, view: &View) -> BTreeMap<Surfaces, Sightings> {
+fn sightings(placed: &PlacedParts, view: &View) -> BTreeMap<Surfaces, Sightings> {
     let mut all: BTreeMap<Surfaces, Sightings> = BTreeMap::new();
     for hit in view.hits.iter().flatten() {
         let element = &placed.world.elements[hit.element];
@@ -63,12 +63,12 @@ fn sightings(placed: &Placed, view: &View) -> BTreeMap<Surfaces, Sightings> {
 }
 
 /// The plane of an element, and the side of its face that it is on.
-fn plane(placed: &Placed, element: &Element) -> (u32, bool) {
+fn plane(placed: &PlacedParts, element: &Element) -> (u32, bool) {
     let face = &placed.world.faces[element.face.index()];
     (placed.world.plane_of(element.face), face.normal.dot(element.normal) > 0.0)
 }
 
-fn sentence(placed: &Placed, view: &View, surfaces: &Surfaces, seen: &Sightings) -> String {
+fn sentence(placed: &PlacedParts, view: &View, surfaces: &Surfaces, seen: &Sightings) -> String {
     let &(instance, material, plane) = surfaces;
     let material = &placed.part_of(instance).part.materials[material.index()].name;
     let what = match plane {

@@ -6,7 +6,7 @@
 use super::view::View;
 use crate::exchange::outcome::Outcome;
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use std::collections::BTreeMap;
 
 /// So much of the energy may be missing or too much.
@@ -14,8 +14,8 @@ const SHARE: f64 = 0.01;
 
 /// A sentence, if a closed scene absorbs noticeably more or less than it emits.
 pub(super) fn note(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     outcome: &Outcome,
     view: &View,
 ) -> Option<String> {
@@ -28,7 +28,7 @@ pub(super) fn note(
     if emitted <= 0.0 || !(gained || lost) || !view.is_closed() {
         return None;
     }
-    let (sender, receiver) = culprits(placed, nodes, outcome, channel, gained)?;
+    let (sender, receiver) = culprits(placed, systems, outcome, channel, gained)?;
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let where_ = if sender == receiver {
         format!("faces of {}", name(sender))
@@ -44,24 +44,24 @@ pub(super) fn note(
 
 /// The sender and the receiver between which most power is gained, or lost.
 fn culprits(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     outcome: &Outcome,
     channel: usize,
     gained: bool,
 ) -> Option<(usize, usize)> {
     let radiosity = placed.split(&outcome.radiosity);
-    let means: Vec<Vec<f64>> = nodes
+    let means: Vec<Vec<f64>> = systems
         .iter()
         .zip(&radiosity)
-        .map(|(node, b)| node.clusters.means(b).into_iter().map(|b| b[channel]).collect())
+        .map(|(system, b)| system.clusters.means(b).into_iter().map(|b| b[channel]).collect())
         .collect();
     // Power that each instance gets from each other, and what each sends.
     let mut arriving: BTreeMap<(usize, usize), f64> = BTreeMap::new();
-    for (k, node) in nodes.iter().enumerate() {
-        for (block, first) in [(node.self_block, placed.world.nodes_of(k).start), (node.coupling, 0)] {
+    for (k, system) in systems.iter().enumerate() {
+        for (block, first) in [(system.self_block, placed.world.nodes_of(k).start), (system.coupling, 0)] {
             for group in 0..block.groups() {
-                let areas: Vec<[f64; 1]> = block.receivers_of(group).map(|i| [node.areas[i]]).collect();
+                let areas: Vec<[f64; 1]> = block.receivers_of(group).map(|i| [system.areas[i]]).collect();
                 for (column, [area]) in block.scatter_group(group, &areas) {
                     let sender = placed.world.instance_of_node(first + column);
                     let place = first + column - placed.world.nodes_of(sender).start;
@@ -70,10 +70,11 @@ fn culprits(
             }
         }
     }
-    let sent = |k: usize| nodes[k].areas.iter().zip(&radiosity[k]).map(|(a, b)| a * b[channel]).sum::<f64>();
+    let sent =
+        |k: usize| systems[k].areas.iter().zip(&radiosity[k]).map(|(a, b)| a * b[channel]).sum::<f64>();
     let received = |k: usize| arriving.range((k, 0)..(k + 1, 0)).map(|(_, power)| power).sum::<f64>();
     let off = |&k: &usize| (received(k) - sent(k)) * if gained { 1.0 } else { -1.0 };
-    let sender = (0..nodes.len()).max_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let sender = (0..systems.len()).max_by(|a, b| off(a).total_cmp(&off(b)))?;
     let nearest = arriving.range((sender, 0)..(sender + 1, 0)).max_by(|a, b| a.1.total_cmp(b.1))?;
     Some((sender, nearest.0.1))
 }

@@ -3,7 +3,7 @@
 
 use super::view::View;
 use crate::exchange::system::InstanceSystem;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::statistics::row_sums;
 use equilux_bake::rays::Hit;
 
@@ -17,16 +17,17 @@ const SAME_PLACE: f64 = 1e-5;
 const NAMED: usize = 3;
 
 /// The worst row of each of the first few instances that have one above one.
-pub(super) fn notes(placed: &Placed, nodes: &[InstanceSystem], view: &View) -> Vec<String> {
-    let worst = |node: &InstanceSystem| row_sums(node).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-    let rows = nodes.iter().enumerate().filter_map(|(k, node)| worst(node).map(|(row, sum)| (k, row, sum)));
+pub(super) fn notes(placed: &PlacedParts, systems: &[InstanceSystem], view: &View) -> Vec<String> {
+    let worst = |system: &InstanceSystem| row_sums(system).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    let rows =
+        systems.iter().enumerate().filter_map(|(k, system)| worst(system).map(|(row, sum)| (k, row, sum)));
     let overfull: Vec<(usize, usize, f64)> = rows.filter(|&(_, _, sum)| sum > 1.0 + ROUNDING).collect();
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let note = |&(k, row, sum): &(usize, usize, f64)| {
         let receiver = placed.world.elements_of(k).start + row;
         let sees =
             format!("element {receiver} of {} sees {:.4} % of what there can be", name(k), 100.0 * sum);
-        match lying_together(placed, nodes, view, (k, row)) {
+        match lying_together(placed, systems, view, (k, row)) {
             Some([a, b]) => format!(
                 "{sees}: faces of {} and {} lie at one place, and the light of both is counted; move one of them off the other",
                 name(a),
@@ -47,15 +48,15 @@ pub(super) fn notes(placed: &Placed, nodes: &[InstanceSystem], view: &View) -> V
 
 /// The instances of two senders of a row that lie at one place, if there are any.
 fn lying_together(
-    placed: &Placed,
-    nodes: &[InstanceSystem],
+    placed: &PlacedParts,
+    systems: &[InstanceSystem],
     view: &View,
     (k, row): (usize, usize),
 ) -> Option<[usize; 2]> {
     let world = &placed.world;
     let origin = world.elements[world.elements_of(k).start + row].centroid;
-    let own = nodes[k].self_block.row(row).map(|(column, _)| column + world.nodes_of(k).start);
-    let senders = own.chain(nodes[k].coupling.row(row).map(|(column, _)| column));
+    let own = systems[k].self_block.row(row).map(|(column, _)| column + world.nodes_of(k).start);
+    let senders = own.chain(systems[k].coupling.row(row).map(|(column, _)| column));
     let instance_of = |element: usize| world.instance_of_node(world.node_of(element));
     senders.flat_map(|node| elements_in(placed, node)).find_map(|sender| {
         let direction = world.elements[sender].centroid - origin;
@@ -68,12 +69,12 @@ fn lying_together(
 }
 
 /// Whether two elements are of one face: then they lie beside each other.
-fn share_an_edge(placed: &Placed, a: usize, b: usize) -> bool {
+fn share_an_edge(placed: &PlacedParts, a: usize, b: usize) -> bool {
     placed.world.elements[a].face == placed.world.elements[b].face
 }
 
 /// The elements of a node of the scene.
-fn elements_in(placed: &Placed, node: usize) -> Vec<usize> {
+fn elements_in(placed: &PlacedParts, node: usize) -> Vec<usize> {
     let (mut open, mut elements) = (vec![node as u32], Vec::new());
     while let Some(node) = open.pop() {
         match placed.world.nodes[node as usize].children {

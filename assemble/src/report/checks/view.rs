@@ -3,7 +3,7 @@
 //! Elements are chosen by area and directions by the cosine, so that each ray carries the same share of all light that a
 //! uniformly bright scene would exchange.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::rays::{Hit, RayIndex};
 use equilux_formats::Element;
 use glam::{DVec2, DVec3};
@@ -25,7 +25,7 @@ pub(super) struct View<'a> {
 
 impl<'a> View<'a> {
     /// A sample of what the elements of a scene see.
-    pub(super) fn of(placed: &'a Placed) -> Self {
+    pub(super) fn of(placed: &'a PlacedParts) -> Self {
         let elements = &placed.world.elements;
         let index = RayIndex::new(elements);
         let mut upto = Vec::with_capacity(elements.len());

@@ -5,10 +5,10 @@ mod exchange;
 pub mod text;
 mod unseen;
 
-use crate::equation::coupling::{Coupler, Foreseen};
+use crate::equation::coupling::{Coupler, ForeseenBlocks};
 use crate::equation::intruders::intruders;
 use crate::outputs::check_writable;
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use crate::report::fates::{Fate, InstanceFate, PartFate};
 use crate::report::light_notes::light_notes;
 use crate::report::summary::{BLACK_ROWS, HIDDEN_SHELLS, SHARED, UNSEEN};
@@ -111,13 +111,13 @@ fn planned_parts(
 fn planned_instances(
     prepared: &Prepared,
     baked: Vec<Option<Baked>>,
-    foresee: impl FnOnce(&Placed) -> Vec<Foreseen>,
+    foresee: impl FnOnce(&PlacedParts) -> Vec<ForeseenBlocks>,
 ) -> Vec<InstanceFate> {
     let foreseen = match baked.into_iter().collect::<Option<Vec<Baked>>>() {
-        Some(parts) => foresee(&Placed::new(parts, prepared.instances.clone())),
+        Some(parts) => foresee(&PlacedParts::new(parts, prepared.instances.clone())),
         None => anew(prepared),
     };
-    let planned = |(instance, foreseen): (&Instance, Foreseen)| InstanceFate {
+    let planned = |(instance, foreseen): (&Instance, ForeseenBlocks)| InstanceFate {
         name: instance.name.clone(),
         part: prepared.parts[instance.part.index()].name.clone(),
         corrected: foreseen.corrected.as_ref().map(Fate::of),
@@ -128,12 +128,12 @@ fn planned_instances(
 }
 
 /// Everything computed.
-fn anew(prepared: &Prepared) -> Vec<Foreseen> {
+fn anew(prepared: &Prepared) -> Vec<ForeseenBlocks> {
     let geometry = |k: usize| &prepared.parts[prepared.instances[k].part.index()].geometry;
     let computed = || Origin::Computed("not all parts are in the cache".into());
     let of = |k: usize| {
         let intruders = intruders(&prepared.instances, geometry, k);
-        Foreseen { corrected: (!intruders.is_empty()).then(computed), coupling: computed(), intruders }
+        ForeseenBlocks { corrected: (!intruders.is_empty()).then(computed), coupling: computed(), intruders }
     };
     (0..prepared.instances.len()).map(of).collect()
 }

@@ -1,18 +1,18 @@
 //! Planar convex pieces of surface: their grids and their centres.
 
-use crate::gather::faces::Plane;
+use crate::gather::faces::CoplanarFaces;
 use equilux_bake::geometry::polygon::{Polygon, part};
 use glam::DVec3;
 
 /// A planar convex piece of surface, seen from its lit side.
 #[derive(Debug)]
-pub struct Piece<'a> {
+pub struct SurfacePiece<'a> {
     /// Corners, counter-clockwise, metres.
     pub corners: &'a [DVec3],
     /// Unit normal.
     pub normal: DVec3,
     /// The faces in its plane.
-    pub plane: &'a Plane<'a>,
+    pub plane: &'a CoplanarFaces<'a>,
 }
 
 /// A polygon cut into a grid of `count` × `count` cells, along its first edge and across it.

@@ -2,7 +2,7 @@
 //! block was made tells of every instance that was there; in goes that, out comes what the treecode needs to bring the
 //! block up to date.
 
-use crate::placed::Placed;
+use crate::placed_parts::PlacedParts;
 use equilux_bake::oven::keys::{Seen, seen_in};
 use equilux_bake::treecode::revision::{Change, Revision};
 use equilux_formats::{BakedGeometry, Geometry, Key, Lookup, Manifest, Rows, Store};
@@ -11,7 +11,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 /// An older block.
-pub struct Older<'a> {
+pub struct StaleBlock<'a> {
     rows: Cow<'a, Rows>,
     /// The key under which it lies; none for a part's own.
     pub key: Option<Key>,
@@ -23,9 +23,9 @@ pub struct Older<'a> {
 /// Above this share of new or gone instances it pays no more to look for what stays.
 const MOST_CHANGED: f64 = 0.5;
 
-impl<'a> Older<'a> {
+impl<'a> StaleBlock<'a> {
     /// A part's own block, in which what stands inside was not there.
-    pub fn alone(placed: &'a Placed, instance: usize, intruders: &[usize]) -> Self {
+    pub fn alone(placed: &'a PlacedParts, instance: usize, intruders: &[usize]) -> Self {
         let part = &placed.part_of(instance).part;
         let mut change = Change::none(placed.instances.len());
         for &intruder in intruders {
@@ -39,7 +39,7 @@ impl<'a> Older<'a> {
     /// The block that was made from what `last` lists, where now `wanted` is asked for; none if it is of another part or
     /// made in another way, too much is new, or it is not in the cache any more. `columns` are those of the block wanted.
     pub fn last(
-        placed: &Placed,
+        placed: &PlacedParts,
         store: &Store,
         instance: usize,
         last: &Manifest,
@@ -98,7 +98,7 @@ fn stays(before: &[(usize, Seen)], now: &[(usize, Seen)]) -> Vec<Option<usize>> 
 }
 
 fn add_part(
-    placed: &Placed,
+    placed: &PlacedParts,
     store: &Store,
     key: Key,
     placement: DAffine3,
@@ -120,7 +120,7 @@ fn add_part(
 
 /// The sender of each column of a coupling that was made among the instances `before`.
 fn senders(
-    placed: &Placed,
+    placed: &PlacedParts,
     instance: usize,
     before: &[(usize, Seen)],
     now: &[(usize, Seen)],

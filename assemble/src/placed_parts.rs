@@ -8,7 +8,7 @@ use equilux_formats::{Instance, LocalEquilibrium, Optics, Result};
 
 /// The parts of a scene in their places.
 #[derive(Debug)]
-pub struct Placed {
+pub struct PlacedParts {
     /// All elements and faces in scene coordinates, instance after instance.
     pub world: World,
     /// The distinct parts.
@@ -28,7 +28,7 @@ pub struct Relit {
     pub origin: Origin,
 }
 
-impl Placed {
+impl PlacedParts {
     /// Place the parts.
     pub fn new(parts: Vec<Baked>, instances: Vec<Instance>) -> Self {
         let world = stage(&parts, &instances);
