@@ -31,6 +31,7 @@ pub mod lightmap;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
 pub mod live;
+mod origin_node;
 mod output_file;
 #[doc(hidden)]
 pub mod outputs;

@@ -1,7 +1,7 @@
 //! Form factors with sampled visibility, the usual way: the unoccluded form factor of a pair times the share of points on the
 //! sender that the receiver sees. Only to compare with: our own form factors are exact.
 
-use crate::sweep::points::{evenly, place_on};
+use crate::gather::sampling::{evenly, place_on};
 use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::rays::RayIndex;
 use equilux_formats::Element;

@@ -19,6 +19,7 @@ pub mod lights;
 pub mod outside;
 pub mod points;
 pub mod receiver;
+pub mod sampling;
 pub mod sky;
 pub mod surface_piece;
 

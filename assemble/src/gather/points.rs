@@ -5,6 +5,7 @@ use crate::gather::Gather;
 use crate::gather::receiver::receiver;
 use crate::output_file;
 use crate::table::Table;
+use csv::WriterBuilder;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::rays::RayIndex;
@@ -16,7 +17,8 @@ use std::path::Path;
 
 /// The first line of the table that is written: the places as they were read (m, unit normal), the irradiance at the point,
 /// the number of the element there and the element's own irradiance (W/m², linear RGB).
-pub const HEADER: &str = "x,y,z,nx,ny,nz,H_r,H_g,H_b,element,He_r,He_g,He_b";
+pub const COLUMNS: [&str; 13] =
+    ["x", "y", "z", "nx", "ny", "nz", "H_r", "H_g", "H_b", "element", "He_r", "He_g", "He_b"];
 
 /// A point is on a surface if it is no further from it than this share of the scene: tables are written with six digits, and
 /// a quad of a table may be two triangles here that are not quite in one plane.
@@ -147,16 +149,18 @@ fn table(
     lights: &[Option<PointLight>],
     irradiance: &[Rgb],
 ) -> io::Result<()> {
-    writeln!(out, "{HEADER}")?;
-    let joined = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    let mut lines = WriterBuilder::new().from_writer(out);
+    lines.write_record(COLUMNS)?;
     for (place, light) in places.iter().zip(lights) {
-        let at = joined(&[(place.point + origin).to_array(), place.normal.to_array()].concat());
-        match light {
-            Some(PointLight { element, irradiance: h }) => {
-                writeln!(out, "{at},{},{element},{}", joined(&h[..]), joined(&irradiance[*element][..]))?;
-            }
-            None => writeln!(out, "{at},,,,,,,")?,
+        let at = [(place.point + origin).to_array(), place.normal.to_array()].concat();
+        let mut line: Vec<String> = at.iter().map(f64::to_string).collect();
+        if let Some(PointLight { element, irradiance: gathered }) = light {
+            line.extend(gathered.0.map(|h| h.to_string()));
+            line.push(element.to_string());
+            line.extend(irradiance[*element].0.map(|h| h.to_string()));
         }
+        line.resize(COLUMNS.len(), String::new());
+        lines.write_record(line)?;
     }
-    Ok(())
+    lines.flush()
 }

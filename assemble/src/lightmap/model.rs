@@ -8,7 +8,7 @@
 use super::Lightmap;
 use super::images::Peaks;
 use super::listing::rectangles;
-use crate::outputs::model::under_origin;
+use crate::origin_node::under_origin;
 use equilux_formats::{MaterialId, Rgb, glb};
 use glam::{DVec3, UVec2, Vec2, Vec3};
 use serde_json::{Value, json};

@@ -4,15 +4,17 @@
 
 use crate::output_file;
 use crate::outputs::scene_light::SceneLight;
+use csv::WriterBuilder;
 use equilux_formats::Result;
-use std::borrow::Cow;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// The first line: centroid (m), normal, area (m²), reflectance, emission, irradiance and radiosity (W/m², linear RGB),
-/// and names.
-pub const HEADER: &str =
-    "x,y,z,nx,ny,nz,area,rho_r,rho_g,rho_b,E_r,E_g,E_b,H_r,H_g,H_b,B_r,B_g,B_b,part,instance";
+/// The columns: centroid (m), normal, area (m²), reflectance, emission, irradiance and radiosity (W/m², linear RGB), and
+/// names.
+pub const COLUMNS: [&str; 21] = [
+    "x", "y", "z", "nx", "ny", "nz", "area", "rho_r", "rho_g", "rho_b", "E_r", "E_g", "E_b", "H_r", "H_g",
+    "H_b", "B_r", "B_g", "B_b", "part", "instance",
+];
 
 /// Write the table to `path`. Fails if it cannot be written.
 pub fn write(path: &Path, light: &SceneLight) -> Result<()> {
@@ -20,18 +22,16 @@ pub fn write(path: &Path, light: &SceneLight) -> Result<()> {
 }
 
 fn table(out: &mut dyn Write, light: &SceneLight) -> io::Result<()> {
-    writeln!(out, "{HEADER}")?;
+    let mut lines = WriterBuilder::new().from_writer(out);
+    lines.write_record(COLUMNS)?;
     for instance in 0..light.world.instances() {
-        let part = field(&light.part_names[instance]);
-        let name = field(&light.instance_names[instance]);
+        let names = [&light.part_names[instance], &light.instance_names[instance]];
         for element in light.world.elements_of(instance) {
-            for number in numbers(light, element) {
-                write!(out, "{number},")?;
-            }
-            writeln!(out, "{part},{name}")?;
+            let numbers = numbers(light, element).map(|number| number.to_string());
+            lines.write_record(numbers.chain(names.map(String::clone)))?;
         }
     }
-    Ok(())
+    lines.flush()
 }
 
 fn numbers(light: &SceneLight, index: usize) -> impl Iterator<Item = f64> {
@@ -40,25 +40,4 @@ fn numbers(light: &SceneLight, index: usize) -> impl Iterator<Item = f64> {
         [(element.centroid + light.origin).to_array(), element.normal.to_array()].into_iter().flatten();
     let rows = [light.reflectance, light.emission, light.irradiance, light.radiosity].map(|rows| rows[index]);
     place.chain([element.area]).chain(rows.into_iter().flatten())
-}
-
-/// A text as a CSV field, quoted if it contains commas, quotes or line breaks.
-fn field(text: &str) -> Cow<'_, str> {
-    if text.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\"")).into()
-    } else {
-        text.into()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_fields_that_need_quotes_get_them() {
-        assert_eq!(field("north wall"), "north wall");
-        assert_eq!(field("a,b"), "\"a,b\"");
-        assert_eq!(field("6\" pipe\n"), "\"6\"\" pipe\n\"");
-    }
 }

@@ -2,6 +2,7 @@
 //! binary glTF 2.0 file with a node for each instance. Its elements are triangles that share no vertices, unlit
 //! (KHR_materials_unlit), with the colours of the pictures (COLOR_0, linear).
 
+use crate::origin_node::under_origin;
 use crate::output_file;
 use crate::outputs::scene_light::SceneLight;
 use crate::picture::exposure::Exposure;
@@ -46,16 +47,6 @@ fn model(light: &SceneLight, exposure: Exposure) -> (Value, Vec<u8>) {
     }
     let roots = under_origin(&mut nodes, light.origin);
     (document(nodes, roots, meshes, accessors, vertices.len()), vertices)
-}
-
-/// Put all `nodes` under a common parent at `origin`, unless that is zero, and return the root nodes of the scene.
-pub(crate) fn under_origin(nodes: &mut Vec<Value>, origin: DVec3) -> Vec<usize> {
-    let all: Vec<usize> = (0..nodes.len()).collect();
-    if origin == DVec3::ZERO {
-        return all;
-    }
-    nodes.push(json!({ "name": "origin", "translation": origin.to_array(), "children": all }));
-    vec![nodes.len() - 1]
 }
 
 fn document(

@@ -1,9 +1,9 @@
-//! Irradiance at the corners of elements, from the elements that share them. In go elements and the irradiance of each; out
-//! comes one value a corner.
+//! Irradiance at the corners of elements, from the irradiance of the elements that share them.
 //!
-//! A corner takes the mean of those around it that lie in about the same plane and whose middles see each other: neither
-//! shines light through a wall that stands on a floor, nor what lies dark below a crate into the light beside it. An element
-//! whose middle lies below a crate is dark all over; where it looks out it takes the light around.
+//! A corner has the mean of the elements around it that lie in about the same plane and whose centroids see each other:
+//! light does not leak below a wall that stands on a floor. An element whose centroid is covered, by a crate on the floor
+//! or by a rug that lies on it, has the light of the crevice; where it is visible beside the cover, it takes the light of
+//! the elements around, and gives none.
 
 use equilux_bake::rays::RayIndex;
 use equilux_formats::{Element, Rgb};
@@ -21,8 +21,11 @@ const SMOOTH: f64 = 0.9;
 /// Middles look at each other from this share of an element's size above it.
 const ABOVE: f64 = 1e-3;
 
-/// No light but rounding, of the brightest.
+/// A share of the brightest light that is rounding.
 const DARK: f64 = 1e-9;
+
+/// A centroid is covered by what lies this close above it, as a share of the element's size.
+const CLOSE: f64 = 0.1;
 
 /// Irradiance at each corner, W/m²; of triangles the last is not used.
 pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[Rgb]) -> Vec<[Rgb; 4]> {
@@ -31,18 +34,18 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
     });
     let tree = RTree::bulk_load(corners.collect());
     let brightest = irradiance.iter().flatten().copied().fold(0.0, f64::max);
+    let is_covered = |(element, h): (&Element, &Rgb)| {
+        let above = index.first_hit(lifted(element), element.normal);
+        let is_dark = h.iter().all(|&h| h <= DARK * brightest);
+        above.is_some_and(|hit| hit.distance < CLOSE * element.area.sqrt() || is_dark && !hit.front)
+    };
+    let covered: Vec<bool> = elements.par_iter().zip(irradiance).map(is_covered).collect();
     let of_element = |(number, element): (usize, &Element)| {
         let size = element.area.sqrt();
-        let is_buried = |number: usize| {
-            let element = &elements[number];
-            let above = || index.first_hit(lifted(element), element.normal);
-            let is_dark = irradiance[number].iter().all(|&h| h <= DARK * brightest);
-            is_dark && above().is_some_and(|hit| !hit.front)
-        };
         let joins = |other: usize| {
-            let sees = || is_buried(number) || index.sees(lifted(element), lifted(&elements[other]));
+            let sees = || covered[number] || index.sees(lifted(element), lifted(&elements[other]));
             let is_alike = || elements[other].normal.dot(element.normal) >= SMOOTH;
-            !is_buried(other) && (other == number || is_alike() && sees())
+            !covered[other] && (other == number || is_alike() && sees())
         };
         let known: Vec<Option<Rgb>> = element
             .corners
@@ -121,6 +124,18 @@ mod tests {
         elements.push(square(DVec3::new(2.0, 0.0, 0.0), 2.0 * DVec3::Y, 2.0 * DVec3::Z));
         irradiance.push(Rgb([7.0; 3]));
         assert_eq!(at_two(&elements, &irradiance), [vec![2.0, 2.0], vec![3.0, 3.0]]);
+    }
+
+    #[test]
+    fn what_lies_below_a_rug_takes_the_light_around_and_gives_none() {
+        let (mut elements, mut irradiance) = floor();
+        // A rug that looks up, a centimetre above the centroid of the second square, which is dim.
+        elements.push(square(DVec3::new(1.1, 0.01, 0.1), 0.8 * DVec3::Z, 0.8 * DVec3::X));
+        irradiance.push(Rgb::splat(7.0));
+        irradiance[1] = Rgb::splat(0.1);
+        let [below, beside] = at_two(&elements, &irradiance);
+        let (meeting, alone) = ((3.0 + 2.0 + 3.0) / 3.0, 3.0);
+        assert_eq!((below, beside), (vec![meeting, alone], vec![alone, meeting]));
     }
 
     #[test]

@@ -2,8 +2,8 @@
 //! proportion to its area.
 
 use crate::gather::points::Place;
+use crate::gather::sampling::{evenly, place_on};
 use equilux_formats::Element;
-use glam::DVec3;
 
 /// `count` points that each represent the same area. Point k lies on the element in which the cumulated area reaches the
 /// share (k + ½)/count of the whole, at place k of a sequence of low discrepancy (Roberts 2018). Empty if nothing has an
@@ -25,26 +25,11 @@ pub fn surface_points(elements: &[Element], count: usize) -> Vec<Place> {
     (0..count).map(point).collect()
 }
 
-/// Place k of the sequence in the unit square: multiples of powers of 1/p modulo 1, where p³ = p + 1.
-pub fn evenly(k: usize) -> (f64, f64) {
-    let along = |step: f64| ((k as f64 + 0.5) * step).fract();
-    (along(0.754_877_666_246_692_8), along(0.569_840_290_998_053_2))
-}
-
-/// Maps the unit square onto an element; on triangles and parallelograms all areas scale alike.
-pub fn place_on(element: &Element, (u, v): (f64, f64)) -> DVec3 {
-    match *element.corners.as_slice() {
-        [a, b, c] if u + v > 1.0 => a + (b - a) * (1.0 - u) + (c - a) * (1.0 - v),
-        [a, b, c] => a + (b - a) * u + (c - a) * v,
-        [a, b, c, d] => (a * (1.0 - u) + b * u) * (1.0 - v) + (d * (1.0 - u) + c * u) * v,
-        _ => element.centroid,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use equilux_formats::{Corners, FaceId, MaterialId};
+    use glam::DVec3;
 
     /// A rectangle at height z, a metre wide and `length` metres long.
     fn rectangle(z: f64, length: f64) -> Element {

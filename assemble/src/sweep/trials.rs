@@ -44,6 +44,8 @@ impl<'a> Trials<'a> {
     /// None as yet. The budget of time begins at `start`.
     pub fn new(runner: Runner<'a>, scene: &'a Scene, start: Instant, budget: Duration) -> Self {
         let (done, skipped, counted) = (vec![], vec![], vec![]);
+        // The work of a sweep is its budget, in seconds.
+        runner.monitor.expect(budget.as_secs_f64());
         Self { runner, scene, start, budget, done, reused: 0, skipped, counted }
     }
 
@@ -119,8 +121,7 @@ impl<'a> Trials<'a> {
             );
             return Ok(None);
         }
-        self.announce(setting, seconds);
-        match self.runner.run(setting)? {
+        match self.run(setting, seconds)? {
             Ended::Done(run) => {
                 self.done.push((*run).clone());
                 return Ok(Some(*run));
@@ -132,11 +133,16 @@ impl<'a> Trials<'a> {
         Ok(None)
     }
 
-    /// Show the run that begins, which is expected to take so many seconds.
-    fn announce(&self, setting: &Setting, seconds: f64) {
-        let left = self.budget.saturating_sub(self.start.elapsed()).as_secs();
-        let what = format!("run {} ({}), {left} s left", self.done.len() + 1, setting.label());
-        self.runner.monitor.begin(what, (seconds * 10.0).ceil() as usize, seconds);
+    /// Run a setting that is expected to take so many seconds, as progress of the sweep.
+    fn run(&self, setting: &Setting, seconds: f64) -> Result<Ended> {
+        let what = format!("run {} ({})", self.done.len() + 1, setting.label());
+        let monitor = self.runner.monitor;
+        monitor.begin(what, (seconds * 10.0).ceil() as usize, seconds);
+        let start = Instant::now();
+        let ended = self.runner.run(setting);
+        // The budget is spent by what the run took, not by what was expected.
+        monitor.spare(start.elapsed().as_secs_f64() - seconds);
+        ended
     }
 
     /// The number of elements of that size, metres, in the scene.

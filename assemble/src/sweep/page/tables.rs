@@ -144,7 +144,7 @@ pub fn separated(summary: &Summary) -> Option<Markup> {
         ],
     };
     let lines: Vec<Line> = summary.separated.iter().map(line).collect();
-    table(Narrow::Scroll, 1, &["source", "elements", "error, elements", "error, points", "setting"], &lines)
+    table(Narrow::Blocks, 1, &["source", "elements", "error, elements", "error, points", "setting"], &lines)
 }
 
 /// The paper's steps, of the runs with elements of the default size that differ in how parts are made and exchange light.
