@@ -78,7 +78,7 @@ proptest! {
             let whole: f64 = chart.sides.iter().map(|side| side.area).sum();
             prop_assert!((area / whole - 1.0).abs() < 1e-8, "{} m² of footprints, {} m²", area, whole);
             for texel in &texels.texels {
-                prop_assert!(texel.pieces.iter().all(|piece| piece.area > 0.0), "{:?} in {:?}", texel, tile);
+                prop_assert!(texel.footprints.iter().all(|piece| piece.area > 0.0), "{:?} in {:?}", texel, tile);
                 let index = (texel.at[1] * tile.size[0] + texel.at[0]) as usize;
                 let h = map.irradiance[number][index][0];
                 prop_assert!((0.0..=PI * (1.0 + 1e-6)).contains(&h), "{} W/m² in {:?} of {:?}", h, texel.at, tile);

@@ -104,7 +104,7 @@ proptest! {
                 // A point on the line between two texels belongs to either.
                 let own = |t: &&Texel| (0..2).all(|i| (place[i] - 0.5 - f64::from(t.at[i])).abs() <= 0.5 + 1e-6);
                 let facing = placement.transform_vector3(side.normal).normalize();
-                let found = texels.texels.iter().filter(own).flat_map(|t| &t.pieces);
+                let found = texels.texels.iter().filter(own).flat_map(|t| &t.footprints);
                 prop_assert!(
                     found.clone().any(|piece| piece.patch == plane && piece.normal.dot(facing) > 1.0 - 1e-9),
                     "no footprint at {} of chart {}", place, tile.chart

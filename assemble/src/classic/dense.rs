@@ -1,4 +1,4 @@
-//! One dense matrix of the whole scene, F_ij for every pair of elements in f64, and the solution of (I − ρF) B = E.
+//! The dense matrix of the whole scene, F_ij for every pair of elements in f64, and the solution of (I − ρF) B = E.
 //! Goral, Torrance, Greenberg & Battaile 1984.
 
 use super::rays;
@@ -12,11 +12,11 @@ use equilux_formats::{Element, Error, Optics, Result, Rgb};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
-/// The residual that is left, relative to the largest radiosity: what our exchange proves by default.
-const RESIDUAL: f64 = 1e-6;
+/// Relative residual at which the solver ends: the bound that the exchange proves by default.
+const RESIDUAL_TOLERANCE: f64 = 1e-6;
 
-/// Rows that are computed at once.
-const ROWS: usize = 512;
+/// Number of rows that are computed together.
+const BATCH_ROWS: usize = 512;
 
 /// The matrix.
 pub struct Dense {
@@ -28,13 +28,13 @@ pub struct Dense {
 }
 
 impl Dense {
-    /// The exact one. Fails if the monitor was stopped.
+    /// The exact matrix. Fails if the monitor was stopped.
     pub fn exact(world: &World, monitor: &Monitor) -> Result<Self> {
         let size = world.elements.len();
         let element: Vec<Option<usize>> = (0..world.nodes.len()).map(|node| world.element_of(node)).collect();
         let mut matrix = Self { size, values: vec![0.0; size * size], time: Duration::ZERO };
         let places: Vec<usize> = (0..size).collect();
-        for rows in places.chunks(ROWS) {
+        for rows in places.chunks(BATCH_ROWS) {
             let receivers = Audience::Points(&world.elements[rows[0]..rows[0] + rows.len()]);
             let timed = exact_rows(world, receivers, monitor)?;
             matrix.time += timed.time;
@@ -48,7 +48,7 @@ impl Dense {
         Ok(matrix)
     }
 
-    /// The one with so many rays a pair. Fails if the monitor was stopped.
+    /// The matrix with sampled visibility, `count` rays for each pair. Fails if the monitor was stopped.
     pub fn by_rays(elements: &[Element], count: usize, monitor: &Monitor) -> Result<Self> {
         let size = elements.len();
         let index = RayIndex::new(elements);
@@ -69,7 +69,7 @@ impl Dense {
         self.values.len() * size_of::<f64>()
     }
 
-    /// Whether some elements see only each other, absorb nothing, and emit: then there is no solution.
+    /// Whether some elements see only each other, absorb nothing, and emit, so that there is no solution.
     pub fn is_endless(&self, optics: &Optics) -> bool {
         let row = |i: usize| -> Vec<(usize, f64)> {
             let row = self.values[i * self.size..(i + 1) * self.size].iter().copied();
@@ -82,7 +82,7 @@ impl Dense {
     pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
         let gathered =
             |row: &[f64]| row.iter().zip(radiosity).fold(Rgb::BLACK, |sum, (&f, b)| sum + b.map(|b| f * b));
-        // Chunks of no length are not allowed, and a scene may be empty.
+        // Chunks of length 0 are not allowed, and a scene may be empty.
         self.values.par_chunks(self.size.max(1)).map(gathered).collect()
     }
 
@@ -94,7 +94,7 @@ impl Dense {
             (0..b.len()).map(|i| b[i] - reflectance[i] * irradiance[i]).collect()
         };
         let mut radiosity = emission.clone();
-        gmres(without_reflection, |r| r.to_vec(), emission, &mut radiosity, RESIDUAL);
+        gmres(without_reflection, |r| r.to_vec(), emission, &mut radiosity, RESIDUAL_TOLERANCE);
         radiosity
     }
 }

@@ -1,6 +1,6 @@
-//! The classic ways to radiosity, to compare with: one matrix of the whole scene, element by element, dense, exact or with
-//! rays; or progressive refinement, which keeps no matrix. No parts, no clusters, no cache. The light goes through the same
-//! outputs as ours.
+//! Classic radiosity, for comparison: one dense matrix of the whole scene, exact or with sampled visibility, or
+//! progressive refinement, which stores no matrix. Uses no parts, clusters or cache. The light is written by the same
+//! code as that of the exchange.
 
 mod dense;
 mod progressive;
@@ -33,67 +33,67 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// How the whole scene is solved.
+/// The method of solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Way {
+pub enum ClassicMethod {
     /// The exact matrix.
     Exact,
-    /// The matrix with so many rays a pair.
+    /// The matrix with this many rays for each pair.
     Rays(u32),
-    /// Progressive refinement until this share of the light is left unshot.
+    /// Progressive refinement until this share of the emitted power is unshot.
     Progressive(f64),
 }
 
-/// What to solve.
+/// The description of a classic solution.
 #[derive(Debug, Clone)]
 pub struct ClassicJob {
     /// The scene's file.
     pub scene: PathBuf,
-    /// Size of elements; none to let the scene decide.
+    /// Size of elements; none for a size that suits the scene.
     pub element_size: Option<ElementSize>,
-    /// How.
-    pub way: Way,
-    /// What the intensities of the file's lights mean; none for what each file suggests.
+    /// The method.
+    pub method: ClassicMethod,
+    /// The units of the intensities of the file's lights; none for the units that each file suggests.
     pub light_units: Option<LightUnits>,
-    /// What shines from all around.
+    /// The sky, if there is one.
     pub sky: Option<Sky>,
-    /// The folder that gets `<scene>/`.
+    /// The folder in which `<scene>/` is created.
     pub out: PathBuf,
-    /// Points to gather light at.
+    /// A table of points at which to gather light.
     pub points: Option<PathBuf>,
 }
 
-/// What a run says; the names are those of the report of our own runs.
+/// The report; its fields are named as in the report of `assemble`.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClassicReport {
     /// The scene's name.
     pub scene: String,
     /// Number of elements.
     pub elements: usize,
-    /// Where time went.
+    /// Time spent.
     pub seconds: ClassicSeconds,
     /// Memory.
     pub bytes: ClassicBytes,
-    /// Elements that shot, one after the other, if it was progressive refinement.
+    /// Number of shots of progressive refinement.
     pub shots: Option<usize>,
-    /// What a person should know of the scene's light.
+    /// Notes on the scene's light.
     pub notes: Vec<String>,
-    /// What was written.
+    /// The paths of the written files.
     pub outputs: Vec<String>,
 }
 
-/// ClassicSeconds.
+/// Time spent, seconds.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClassicSeconds {
     /// Form factors, summed over threads.
     pub form_factors: f64,
     /// Wall time from the file to the light of all elements.
     pub solve: f64,
-    /// The same in processor time, where the system tells.
+    /// Processor time for the same work, where the operating system reports it.
     pub solve_cpu: Option<f64>,
     /// Wall time to gather light at points.
     pub points: f64,
-    /// The same in processor time, where the system tells.
+    /// Processor time to gather light at points, where the operating system reports it.
     pub points_cpu: Option<f64>,
     /// Wall time of the run.
     pub total: f64,
@@ -102,24 +102,25 @@ pub struct ClassicSeconds {
 /// Memory.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClassicBytes {
-    /// The matrix.
+    /// The matrix, bytes.
     pub stored: usize,
-    /// The most the process held until the light was known.
+    /// Peak memory of the process until the solution was available, bytes.
     pub peak_rss: Option<usize>,
 }
 
-/// The light of all elements, and what it took.
+/// The light of all elements, and its cost.
 struct ClassicSolution {
-    /// W/m².
+    /// Radiosity, W/m².
     radiosity: Vec<Rgb>,
-    /// From elements, W/m².
+    /// Irradiance from elements, W/m².
     irradiance: Vec<Rgb>,
     form_factor_time: Duration,
     matrix_bytes: usize,
     shots: Option<usize>,
 }
 
-/// Run the job; everything is written when this returns.
+/// Run the job. All outputs are written when this returns. Fails if the scene cannot be read or solved, or an output
+/// cannot be written.
 pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     let start = Instant::now();
     let scene = import_scene(&job.scene)?;
@@ -133,11 +134,11 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     let placed = unbaked(prepare(&scene, &preparation)?);
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
     let lights = lights(&scene.lights, job.light_units, sky.as_ref(), &placed.world);
-    let nowhere = tempfile::tempdir().map_err(|error| {
+    let temporary_cache = tempfile::tempdir().map_err(|error| {
         let found = format!("cannot be used ({error})");
         Error::new(std::env::temp_dir(), found, "a folder for temporary files", "set TMPDIR to one")
     })?;
-    let store = Store::open(nowhere.path())?;
+    let store = Store::open(temporary_cache.path())?;
     let coupler = Coupler { placed: &placed, store: &store, file: &job.scene, resolution: EXACT, monitor };
     let direct = direct(&coupler, &lights)?;
     let each: Vec<Optics> =
@@ -174,20 +175,22 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     })
 }
 
-/// The light of all elements. Fails if the monitor was stopped.
+/// The light of all elements. Fails if the monitor was stopped or there is no solution.
 fn solve(
     job: &ClassicJob,
     placed: &PlacedParts,
     optics: &Optics,
     monitor: &Monitor,
 ) -> Result<ClassicSolution> {
-    let matrix = match job.way {
-        Way::Exact => Dense::exact(&placed.world, monitor),
-        Way::Rays(count) => Dense::by_rays(&placed.world.elements, count as usize, monitor),
-        Way::Progressive(unshot) => return progressive::solve(&placed.world, optics, unshot, monitor),
+    let matrix = match job.method {
+        ClassicMethod::Exact => Dense::exact(&placed.world, monitor),
+        ClassicMethod::Rays(count) => Dense::by_rays(&placed.world.elements, count as usize, monitor),
+        ClassicMethod::Progressive(unshot) => {
+            return progressive::solve(&placed.world, optics, unshot, monitor);
+        }
     }?;
     if matrix.is_endless(optics) {
-        let found = "closed, reflects everything and emits somewhere: its light grows without end";
+        let found = "no equilibrium exists: the scene is closed, reflects all light and emits, so its light grows without end";
         let remedy = "lower a base colour below 1, or switch the emission off";
         return Err(Error::new(&job.scene, found, "a reflectance below 1 or an opening somewhere", remedy));
     }
@@ -197,7 +200,7 @@ fn solve(
     Ok(ClassicSolution { irradiance, radiosity, form_factor_time, matrix_bytes, shots: None })
 }
 
-/// The parts in their places, without any form factors.
+/// The placed parts, without form factors.
 fn unbaked(prepared: Prepared) -> PlacedParts {
     let parts = prepared.parts.into_iter().map(without_light).collect();
     PlacedParts::new(parts, prepared.instances)
@@ -231,7 +234,7 @@ fn without_light(part: PreparedPart) -> Baked {
     }
 }
 
-/// Write the light of points; returns the path, for a person.
+/// Write the light at points; returns the path as text.
 fn write_points(
     folder: &Path,
     places: &[Place],

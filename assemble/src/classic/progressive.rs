@@ -1,8 +1,9 @@
-//! Progressive refinement: the elements with the most unshot light shoot it at all others, row by row of a matrix that is
-//! never kept. Cohen, Chen, Wallace & Greenberg 1988.
+//! Progressive refinement: the elements with the most unshot power shoot it at all others, row by row of a matrix
+//! that is never stored. Cohen, Chen, Wallace & Greenberg 1988.
 //!
-//! F_ij = F_ji A_j / A_i: what i receives of shooter j comes from the row of j by reciprocity, as there. It holds for averages
-//! over elements and only nearly for centroids, so the light differs a little from that of the matrix.
+//! F_ij = F_ji A_j / A_i: the state that i receives from shooter j follows from the row of j by reciprocity, as in
+//! the paper. Reciprocity is exact for averages over elements and approximate for centroids, so the state differs
+//! slightly from that of the matrix.
 
 use super::ClassicSolution;
 use equilux_bake::monitor::Monitor;
@@ -11,21 +12,20 @@ use equilux_bake::world::World;
 use equilux_formats::{Element, Optics, Result, Rgb};
 use std::time::Duration;
 
-/// Elements that shoot at once, so that threads have something to do.
-const SHOOTERS: usize = 16;
+/// Number of elements that shoot together, for parallelism.
+const BATCH_SHOOTERS: usize = 16;
 
-/// Shots an element after which light is taken for endless.
-const SHOTS: usize = 100;
+/// Maximum average number of shots of an element, for scenes without equilibrium.
+const MAX_SHOTS: usize = 100;
 
-/// Shoot until the unshot power is less than the share `unshot` of what all elements emit. Fails if the monitor was
-/// stopped.
+/// Shoot until the unshot power is below the share `unshot` of the emitted power. Fails if the monitor was stopped.
 pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> Result<ClassicSolution> {
     let elements = &world.elements;
     let power = |left: &[Rgb]| -> f64 {
         left.iter().zip(elements).map(|(b, e)| e.area * b.iter().sum::<f64>()).sum()
     };
     let emitted = power(&optics.emission);
-    let mut light = ShootingState {
+    let mut state = ShootingState {
         world,
         optics,
         radiosity: optics.emission.clone(),
@@ -35,16 +35,17 @@ pub fn solve(world: &World, optics: &Optics, unshot: f64, monitor: &Monitor) -> 
     };
     monitor.begin("shots", 0, 0.0);
     let mut shots = 0;
-    while power(&light.unshot) > unshot * emitted && shots < SHOTS * elements.len() {
-        let brightest = brightest(elements, &light.unshot);
-        light.shoot(&brightest, monitor)?;
+    while power(&state.unshot) > unshot * emitted && shots < MAX_SHOTS * elements.len() {
+        let brightest = brightest(elements, &state.unshot);
+        state.shoot(&brightest, monitor)?;
         shots += brightest.len();
         monitor.advance(brightest.len());
     }
-    let ShootingState { radiosity, irradiance, time, .. } = light;
+    let ShootingState { radiosity, irradiance, time, .. } = state;
     Ok(ClassicSolution { radiosity, irradiance, form_factor_time: time, matrix_bytes: 0, shots: Some(shots) })
 }
 
+/// State of progressive refinement; vectors in W/m².
 #[derive(Debug)]
 struct ShootingState<'a> {
     world: &'a World,
@@ -56,7 +57,7 @@ struct ShootingState<'a> {
 }
 
 impl ShootingState<'_> {
-    /// These elements send all that they have not sent yet.
+    /// Send all unshot radiosity of these elements.
     fn shoot(&mut self, shooters: &[usize], monitor: &Monitor) -> Result<()> {
         let world = self.world;
         let points: Vec<Element> = shooters.iter().map(|&j| world.elements[j]).collect();
@@ -78,11 +79,11 @@ impl ShootingState<'_> {
     }
 }
 
-/// The elements with the most unshot power, in the order of elements, for neighbours share their search.
+/// The elements with the most unshot power, in the order of elements, since neighbours share most of their search.
 fn brightest(elements: &[Element], unshot: &[Rgb]) -> Vec<usize> {
     let power = |j: usize| elements[j].area * unshot[j].iter().sum::<f64>();
     let mut order: Vec<usize> = (0..elements.len()).filter(|&j| power(j) > 0.0).collect();
-    let count = SHOOTERS.min(order.len());
+    let count = BATCH_SHOOTERS.min(order.len());
     if count < order.len() {
         order.select_nth_unstable_by(count, |&a, &b| power(b).total_cmp(&power(a)).then(a.cmp(&b)));
     }

@@ -1,13 +1,14 @@
-//! Form factors with sampled visibility, the usual way: the unoccluded form factor of a pair times the share of points on the
-//! sender that the receiver sees. Only to compare with: our own form factors are exact.
+//! Form factors with sampled visibility, as in common practice: the unoccluded form factor of a pair times the share
+//! of points on the sender that the receiver sees. Only for comparison, since the form factors of parts are exact.
 
 use crate::gather::sampling::{evenly, place_on};
 use equilux_bake::form_factor::{contour, plain};
 use equilux_bake::rays::RayIndex;
 use equilux_formats::Element;
 
-/// Row `receiver`: one value an element, from rays between its centroid and `count` points on each element that faces it. The
-/// points fill the sender evenly (Roberts 2018), begun elsewhere for each receiver.
+/// Row `receiver`: one value for each element, from rays between the receiver's centroid and `count` points on each
+/// element that faces it. The points are evenly distributed (Roberts 2018), with a different offset for each
+/// receiver.
 pub fn row(elements: &[Element], index: &RayIndex, receiver: usize, count: usize) -> Vec<f64> {
     let own = &elements[receiver];
     let form_factor = |sender: &Element| {
@@ -19,7 +20,7 @@ pub fn row(elements: &[Element], index: &RayIndex, receiver: usize, count: usize
     elements.iter().map(form_factor).collect()
 }
 
-/// The k-th place in the unit square, moved for each receiver by multiples of the golden ratio and of √2.
+/// Point k in the unit square, shifted for each receiver by multiples of the golden ratio and of √2.
 fn shifted(k: usize, receiver: usize) -> (f64, f64) {
     let (u, v) = evenly(k);
     let moved = |place: f64, step: f64| (place + receiver as f64 * step).fract();

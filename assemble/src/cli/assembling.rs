@@ -1,6 +1,6 @@
-//! Assembling for a person: with progress, once or again and again, with a page or without.
+//! Runs the commands that assemble a scene, with a progress display: once or repeatedly, with or without a live page.
 
-use super::printed::said;
+use super::printed::printed_text;
 use crate::equation::observer::Observer;
 use crate::exchange::listener::Unobserved;
 use crate::live::Live;
@@ -14,35 +14,35 @@ use equilux_bake::cli::progress;
 use equilux_bake::monitor::Monitor;
 use std::sync::Arc;
 
-/// A command to assemble, parsed.
+/// A parsed command that assembles a scene.
 pub struct Invocation {
-    /// What to assemble, and how.
+    /// The job.
     pub job: Job,
-    /// The error that element size and tolerance are to be chosen for.
+    /// The target error for which element size and tolerance are chosen, if given.
     pub target_error: Option<f64>,
-    /// The port of a page that shows it, 0 for any.
+    /// The port of the live page, 0 for any; none without a page.
     pub live: Option<u16>,
-    /// Whether to print for machines.
+    /// Whether to print JSON.
     pub json: bool,
 }
 
-/// Assemble, with a page if there is to be one; that page is then served on. Returns what is left to say.
+/// Assemble once. A live page is served until it is closed. Returns the text that is still to be printed.
 pub fn once(invocation: &Invocation, text: impl Fn(&Report) -> String) -> anyhow::Result<String> {
     let monitor = progress::monitor_for_program();
     let live = invocation.live.map(|port| serve(port, false, &monitor)).transpose()?;
     let report = assemble(invocation, &monitor, live.as_ref())?;
-    let text = said(invocation.json, &report, text);
+    let text = printed_text(invocation.json, &report, text);
     let Some(live) = live.filter(|_| !monitor.stopped()) else { return Ok(text) };
     print(&text)?;
     tell(format_args!(
-        "all is written; the page stays at {} until Ctrl-C, or until it is closed there",
+        "all outputs are written; the page remains at {} until Ctrl-C, or until it is closed there",
         live.url()
     ));
     live.stay();
     Ok(String::new())
 }
 
-/// Assemble again and again. Errors in the scene are printed, and it goes on.
+/// Assemble whenever a file changes. Errors in the scene are printed, and watching continues.
 pub fn watched(invocation: &Invocation) -> anyhow::Result<String> {
     let monitor = progress::monitor_for_program();
     let live = invocation.live.map(|port| serve(port, true, &monitor)).transpose()?;
@@ -53,7 +53,8 @@ pub fn watched(invocation: &Invocation) -> anyhow::Result<String> {
         &monitor,
         |why| match assemble(invocation, &monitor, live.as_ref()) {
             Ok(report) => {
-                printed = print(&said(invocation.json, &report, |report| short(why, report, &last_notes)));
+                printed =
+                    print(&printed_text(invocation.json, &report, |report| short(why, report, &last_notes)));
                 if printed.is_err() {
                     monitor.stop();
                 }
@@ -94,7 +95,7 @@ fn advised(
     Ok(Report { advice: Some(advice), ..run_observed(&job, monitor, observer)? })
 }
 
-/// The report in a line, with what is asked for or new.
+/// A short report in one line, with explanations and new notes.
 fn short(why: &str, report: &Report, last_notes: &[String]) -> String {
     let baked = report.blocks.self_baked;
     let mut text = format!(

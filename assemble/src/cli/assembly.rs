@@ -1,4 +1,4 @@
-//! A scene on the command line, and how to assemble it.
+//! Options for a scene and its assembly.
 
 use super::values;
 use crate::exchange::settings::Goal;
@@ -14,7 +14,7 @@ use equilux_bake::cli::options::SceneOptions;
 use equilux_formats::LightUnits;
 use std::path::PathBuf;
 
-/// A scene, and how to assemble it.
+/// Options for a scene and its assembly.
 #[derive(Args)]
 pub struct Assembly {
     /// The scene, a .gltf or .glb file, or a folder with one
@@ -22,67 +22,67 @@ pub struct Assembly {
     pub scene: Option<PathBuf>,
     #[command(flatten)]
     pub options: SceneOptions,
-    /// Folder for the outputs; they go to DIR/SCENE/: the result as a picture and as a model, lightmaps and tables
+    /// Folder for the outputs, written to DIR/SCENE/: the result as a picture and as a model, lightmaps and tables
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// How parts exchange light
     #[arg(long, value_name = "METHOD", default_value = "auto")]
     exchange: Method,
-    /// At most this many rounds
+    /// Maximum number of rounds
     #[arg(long, value_name = "N")]
     rounds: Option<usize>,
-    /// End the exchange when this error of it is proved, relative to the brightest radiosity; 0 goes
-    /// on until rounding [default: 1e-6, with --verify 0]
+    /// End the exchange when this error bound is proved, relative to the brightest radiosity; 0 continues until
+    /// rounding [default: 1e-6, with --verify 0]
     #[arg(long, value_name = "BOUND", value_parser = values::error_bound)]
     error: Option<f64>,
-    /// Measure what --tolerance costs in about this many exact rows, or in all, which proves a sharp
-    /// bound; 0 measures nothing
+    /// Measure the error of --tolerance in about this many exact rows, or in all rows, which proves a sharp bound; 0
+    /// measures nothing
     #[arg(long, value_name = "N|all", default_value = "256", value_parser = values::exact_rows)]
     exact_rows: ExactRows,
-    /// Start from the light of the last run with --warm instead of darkness, and keep this run's: fewer
-    /// rounds after a small change. The bytes of the outputs then depend on what ran before
+    /// Start from the light of the last run with --warm instead of darkness, and store this run's light: fewer rounds
+    /// after a small change. The bytes of the outputs then depend on earlier runs
     #[arg(long)]
     warm: bool,
-    /// Which pictures to draw; the result as a model is always written
+    /// Pictures to draw; the result as a model is always written
     #[arg(long, value_name = "WHICH", default_value = "last")]
     pictures: Pictures,
-    /// What shines from all around: a radiance in W/(m² sr), one number or R,G,B, or an equirectangular picture,
-    /// .hdr or .exr, whose middle is -Z, right of that +X, and top +Y
+    /// The sky: a radiance in W/(m² sr), one number or R,G,B, or an equirectangular picture, .hdr or .exr, with -Z in
+    /// the middle, +X to the right of it, and +Y at the top
     #[arg(long, value_name = "RADIANCE|FILE", value_parser = values::sky)]
     sky: Option<Sky>,
-    /// What the intensities of the file's lights mean [default: what Blender's exporter writes if that wrote the file, else
-    /// radiometric]
+    /// Units of the intensities of the file's lights [default: those of Blender's exporter for files that it wrote,
+    /// otherwise radiometric]
     #[arg(long, value_name = "UNITS")]
     light_units: Option<LightUnits>,
-    /// Write lightmaps: lightmap.exr and .png, what lies where in them, and models that carry them
+    /// Write lightmaps: lightmap.exr and .png, a list of their contents, and models that carry them
     #[arg(long)]
     lightmaps: bool,
-    /// Texels of lightmaps are at most so large [default: what makes about 1024 x 1024 of them]
+    /// Maximum size of texels of lightmaps [default: results in about 1024 x 1024 texels]
     #[arg(long, value_name = "METRES", requires = "lightmaps", value_parser = values::texel_size)]
     texel_size: Option<f64>,
-    /// What the numbers in lightmap.exr are
+    /// Units of the numbers in lightmap.exr
     #[arg(long, value_name = "UNITS", requires = "lightmaps", default_value = "irradiance")]
     lightmap_units: Units,
-    /// Also write where the light of each texel comes from: lightmap_direction.exr
+    /// Also write the mean direction of the light of each texel: lightmap_direction.exr
     #[arg(long, requires = "lightmaps")]
     lightmap_directions: bool,
     /// Also solve the classic whole-scene matrix and print the largest difference
     #[arg(long)]
     verify: bool,
-    /// Also write the irradiance at the points of this table (columns x, y, z, nx, ny, nz), gathered there with exact
+    /// Also write the irradiance at the points of this table (columns x, y, z, nx, ny, nz), gathered with exact
     /// visibility: points.csv
     #[arg(long, value_name = "FILE.csv")]
     points: Option<PathBuf>,
     /// Write a table of all elements, their optics and their light
     #[arg(long, value_name = "FILE.csv")]
     elements: Option<PathBuf>,
-    /// Write for Make, Ninja or CMake which files were read; the target in it is the result.glb
+    /// Write a dependency file for Make, Ninja or CMake that lists the input files; its target is result.glb
     #[arg(long, value_name = "FILE")]
     depfile: Option<PathBuf>,
 }
 
 impl Assembly {
-    /// The job, with nothing explained and no picture from a camera.
+    /// The job, without explanations and without a picture from a camera.
     pub fn job(&self) -> Job {
         let default = if self.verify { Goal { error: 0.0, ..Goal::default() } } else { Goal::default() };
         Job {

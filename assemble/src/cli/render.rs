@@ -1,4 +1,4 @@
-//! A picture on the command line.
+//! Options for a picture from a camera.
 
 use super::assembly::Assembly;
 use super::values;
@@ -9,12 +9,13 @@ use clap::Args;
 use glam::DVec3;
 use std::path::PathBuf;
 
-/// A picture.
+/// Options for a picture from a camera.
 #[derive(Args)]
 pub struct Render {
     #[command(flatten)]
     pub assembly: Assembly,
-    /// The scene's camera of this name, or of this number from 1 [default: the first, or one that shows everything]
+    /// The scene's camera with this name, or with this number, counting from 1 [default: the first, or one that shows
+    /// the whole scene]
     #[arg(long, value_name = "NAME|N")]
     camera: Option<String>,
     /// Look from this point, metres
@@ -26,23 +27,23 @@ pub struct Render {
     /// Vertical field of view of --from, degrees
     #[arg(long, value_name = "DEGREES", default_value = "45", value_parser = values::field_of_view)]
     fov: f64,
-    /// Width and height, pixels [default: 720 high, and as wide as the camera says]
+    /// Width and height, pixels [default: 720 high, with the camera's aspect ratio]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<[u32; 2]>,
     /// How light is drawn
     #[arg(long, value_name = "HOW", default_value = "smooth")]
     shading: Shading,
-    /// So many stops brighter than what suits the scene, or darker
+    /// Exposure relative to the automatic one, stops
     #[arg(long, value_name = "STOPS", default_value = "0", value_parser = values::stops, allow_hyphen_values = true)]
     exposure: f64,
-    /// Also show in false colours how far irradiance is from that of this table: truth.csv of a scene, or what --elements or
-    /// --points wrote
+    /// Also show the difference from the irradiance in this table in false colours: truth.csv of a scene, or a table
+    /// written by --elements or --points
     #[arg(long, value_name = "FILE.csv")]
     against: Option<PathBuf>,
 }
 
 impl Render {
-    /// The job with this picture and no other.
+    /// The job with this picture and no others.
     pub fn job(&self) -> Job {
         let eye = match (&self.camera, self.from, self.to) {
             (Some(name), ..) => Eye::Camera(name.clone()),

@@ -10,21 +10,22 @@ use equilux_formats::Result;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// A scene, and the time for trying settings on it.
+/// A scene, and the time budget for trials.
 #[derive(Args)]
 #[command(after_help = EXAMPLES)]
 pub struct Arguments {
     /// The scene, a .gltf or .glb file, or a folder with one
     #[arg(value_parser = values::scene)]
     scene: PathBuf,
-    /// Reference light, a table as scenes/README.md describes it [default: the finest run within a third of the
+    /// Reference light, a table as described in scenes/README.md [default: the finest run within a third of the
     /// budget]
     #[arg(long, value_name = "FILE.csv")]
     truth: Option<PathBuf>,
-    /// Time for all runs, seconds; settings that would take longer are skipped
+    /// Time for all runs, seconds; settings that would exceed it are skipped
     #[arg(long, value_name = "SECONDS", default_value = "300", value_parser = budget)]
     budget: Duration,
-    /// Folder for the outputs; they go to DIR/SCENE/sweep/: report.html, sweep.csv, sweep.json, and the result of each run
+    /// Folder for the outputs, written to DIR/SCENE/sweep/: report.html, sweep.csv, sweep.json, and the result of
+    /// each run
     #[arg(long, value_name = "DIR", default_value = "out")]
     out: PathBuf,
     /// Print one JSON object on stdout and nothing else

@@ -1,4 +1,4 @@
-//! Values of options as people write them. Each says what it expects instead of what it cannot read.
+//! Parsers of option values. Their errors state the expected form.
 
 use crate::gather::sky::Sky;
 use crate::proof::sample::ExactRows;
@@ -87,7 +87,7 @@ pub fn error_bound(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A scene's file; of a folder with one such file, that.
+/// The path of a scene's file; for a folder with a single scene file, that file.
 pub fn scene(text: &str) -> Result<PathBuf, Infallible> {
     match &scenes_in(Path::new(text))[..] {
         [only] => Ok(only.clone()),
@@ -95,7 +95,7 @@ pub fn scene(text: &str) -> Result<PathBuf, Infallible> {
     }
 }
 
-/// A port; the program may choose one if it is 0.
+/// A port; 0 for any free port.
 pub fn port(text: &str) -> Result<u16, String> {
     text.parse().map_err(|_| "a port is a number up to 65535; the scene comes before --live".into())
 }

@@ -1,5 +1,5 @@
-//! Direct light averaged over a piece of surface: that of surfaces by exact form factors at points of a grid that is made
-//! finer until the average stays, that of lamps by clipping.
+//! Direct light averaged over a piece of surface: light of surfaces by exact form factors at grid points, with ever
+//! finer grids until the average converges; light of lamps by clipping.
 
 use crate::gather::Gather;
 use crate::gather::receiver::receiver;
@@ -8,18 +8,18 @@ use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
-/// Grids of this many cells a side, one after the other.
+/// Cells on each side of the successive grids.
 const GRIDS: [usize; 4] = [1, 2, 4, 8];
 
-/// Of them for reflected light, which has no edges but where things touch.
+/// Grids for reflected light, which has no sharp edges except at contacts.
 const COARSE_GRIDS: &[usize] = &[2, 4];
 
-/// A finer grid is taken where the last step changed the average by more than this share. Midpoint rules err by a third of
-/// their last change where light is smooth, by less than that change at the edges of shadows.
-const STAYS: f64 = 0.01;
+/// A finer grid is used where the last step changed the average by more than this share. Midpoint rules have an error
+/// of a third of their last change where light is smooth, and of less than that change at shadow edges.
+const MAX_RELATIVE_CHANGE: f64 = 0.01;
 
 impl Gather {
-    /// The average direct irradiance of pieces, W/m². Light far below `unit` (W/m²) need not be as exact.
+    /// The average direct irradiance of pieces, W/m². Accuracy is reduced for light far below `unit`, W/m².
     pub fn direct(&self, pieces: &[SurfacePiece], unit: Rgb) -> Vec<Rgb> {
         let mut found = self.glow_over(pieces, unit);
         for lamp in self.lamps() {
@@ -29,8 +29,8 @@ impl Gather {
         found
     }
 
-    /// The average reflected irradiance of pieces, W/m²: from their middles where nothing stands near, else from grids as
-    /// direct light.
+    /// The average reflected irradiance of pieces, W/m²: from their centres where nothing is near, otherwise from
+    /// grids as for direct light.
     pub fn reflected_over(&self, pieces: &[SurfacePiece], unit: Rgb) -> Vec<Rgb> {
         let reflected = |points: &[Element]| self.reflected(points);
         let all: Vec<usize> = (0..pieces.len()).collect();
@@ -40,7 +40,7 @@ impl Gather {
         found
     }
 
-    /// Whether anything stands before a piece at less than its own size.
+    /// Whether any geometry lies in front of a piece within its own size.
     fn stands_near(&self, piece: &SurfacePiece) -> bool {
         let bounds = Aabb::around(piece.corners);
         self.anything_before(bounds.grown(bounds.diagonal() / 2.0), piece.corners[0], piece.normal)
@@ -55,7 +55,7 @@ impl Gather {
     }
 }
 
-/// Take finer and finer grids for those of `open` whose average does not stay.
+/// Use ever finer grids for the pieces in `open` whose average has not converged.
 fn refine(
     pieces: &[SurfacePiece],
     found: &mut [Rgb],
@@ -69,7 +69,9 @@ fn refine(
         let mut moves = Vec::new();
         for (&number, average) in open.iter().zip(averages) {
             let before = std::mem::replace(&mut found[number], average);
-            let stays = |c: usize| (average[c] - before[c]).abs() <= STAYS * average[c].max(0.1 * unit[c]);
+            let stays = |c: usize| {
+                (average[c] - before[c]).abs() <= MAX_RELATIVE_CHANGE * average[c].max(0.1 * unit[c])
+            };
             if !(0..3).all(stays) {
                 moves.push(number);
             }
@@ -78,7 +80,7 @@ fn refine(
     }
 }
 
-/// The averages over grids of some pieces.
+/// The averages of some pieces over grids.
 fn averages(
     pieces: &[SurfacePiece],
     which: &[usize],
@@ -94,7 +96,7 @@ fn averages(
         for &(centre, area) in &cells {
             let Some(face) = piece.plane.face_at(centre) else { continue };
             points.push(receiver(centre, piece.normal, face));
-            // A piece that is no larger than its corners are rounded by has the light of its middle.
+            // A piece as small as the rounding of its corners gets the light at its centre.
             weights.push((place, if whole > 0.0 { area / whole } else { 1.0 / cells.len() as f64 }));
         }
     }

@@ -1,5 +1,5 @@
-//! The cone of a spot: how much of a spot's intensity goes in a direction, and into a convex polygon. KHR_lights_punctual:
-//! I(θ)/I = clamp(cos θ · s + o, 0, 1)², s = 1/(cos inner − cos outer), o = −s cos outer.
+//! The cone of a spot light: the share of its intensity in a direction, and its integral over a convex polygon.
+//! KHR_lights_punctual: I(θ)/I = clamp(cos θ · s + o, 0, 1)², s = 1/(cos inner − cos outer), o = −s cos outer.
 
 use crate::gather::surface_piece::{cells, centre};
 use equilux_bake::geometry::polygon::{Polygon, Side, clip};
@@ -7,7 +7,7 @@ use equilux_bake::geometry::solid_angle::solid_angle;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// The cone of a spot, as KHR_lights_punctual has it.
+/// The cone of a spot light, as KHR_lights_punctual defines it.
 #[derive(Debug, Clone)]
 pub struct Cone {
     direction: DVec3,
@@ -18,26 +18,26 @@ pub struct Cone {
     around: [DVec3; PLANES],
 }
 
-/// The cosines of a spot's cones are taken to differ by at least this, against division by zero: with equal angles the edge
-/// is hard.
-const SHARP: f64 = 1e-9;
+/// Minimum difference between the cosines of the two cone angles, to avoid division by zero: with equal angles the
+/// edge is hard.
+const MIN_COSINE_DIFFERENCE: f64 = 1e-9;
 
-/// Planes around the outer cone.
+/// Number of planes around the outer cone.
 const PLANES: usize = 8;
 
-/// What the planes leave of a polygon is cut this often along each side.
-const CUTS: usize = 4;
+/// Number of cells on each side into which a clipped polygon is divided.
+const CELLS_PER_SIDE: usize = 4;
 
-/// Cells over which the falloff changes by more than this are cut again,
-const STEEP: f64 = 0.1;
+/// Cells over which the falloff changes by more than this are divided again.
+const MAX_FALLOFF_CHANGE: f64 = 0.1;
 
-/// so many times: at a hard edge the light of a polygon is off by about a thousandth then.
-const AGAIN: usize = 2;
+/// Maximum number of repeated divisions: the error at a hard edge is then about a thousandth.
+const MAX_DIVISIONS: usize = 2;
 
 impl Cone {
     /// A cone around `direction`, a unit vector, with these half angles, radians; `inner` is at most `outer`.
     pub fn new(direction: DVec3, inner: f64, outer: f64) -> Self {
-        let scale = 1.0 / (inner.cos() - outer.cos()).max(SHARP);
+        let scale = 1.0 / (inner.cos() - outer.cos()).max(MIN_COSINE_DIFFERENCE);
         let (u, v) = direction.any_orthonormal_pair();
         let around = std::array::from_fn(|k| {
             let (sine, cosine) = (TAU * k as f64 / PLANES as f64).sin_cos();
@@ -62,7 +62,7 @@ impl Cone {
                 Side::Piece(piece) => within = piece,
             }
         }
-        self.over_cells(&within, normal, AGAIN)
+        self.over_cells(&within, normal, MAX_DIVISIONS)
     }
 
     fn over_cells(&self, polygon: &[DVec3], normal: DVec3, again: usize) -> f64 {
@@ -70,16 +70,16 @@ impl Cone {
             let middle = self.falloff(centre(&cell, normal).0);
             let corners = || cell.iter().map(|&corner| self.falloff(corner));
             match again {
-                1.. if corners().any(|corner| (corner - middle).abs() > STEEP) => {
+                1.. if corners().any(|corner| (corner - middle).abs() > MAX_FALLOFF_CHANGE) => {
                     self.over_cells(&cell, normal, again - 1)
                 }
-                // Simpson's rule: exact for what is quadratic over a parallelogram.
+                // Simpson's rule, exact for quadratic functions over a parallelogram.
                 _ => {
                     solid_angle(&cell).abs() * (2.0 * middle + corners().sum::<f64>() / cell.len() as f64)
                         / 3.0
                 }
             }
         };
-        cells(polygon, CUTS).into_iter().map(of).sum()
+        cells(polygon, CELLS_PER_SIDE).into_iter().map(of).sum()
     }
 }

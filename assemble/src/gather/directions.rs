@@ -1,5 +1,5 @@
-//! Where light comes from. In go pieces of surface; out comes for each the mean direction of its light, weighted by the
-//! luminance of the irradiance that comes from there.
+//! The mean direction of arriving light. Input: pieces of surface. Output: for each piece the mean direction of its
+//! light, weighted by the luminance of the irradiance from each direction.
 
 use crate::gather::Gather;
 use crate::gather::receiver::receiver;
@@ -9,8 +9,8 @@ use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
 impl Gather {
-    /// Σ_j Y_j ω_j / Σ_j Y_j at the middle of each piece, with the luminance Y_j of F_ij B_j and the direction ω_j to the
-    /// middle of sender j; zero where there is no light.
+    /// Σ_j Y_j ω_j / Σ_j Y_j at the centre of each piece, with the luminance Y_j of F_ij B_j and the direction ω_j to
+    /// the centre of sender j; zero where there is no light.
     pub fn directions(&self, pieces: &[SurfacePiece]) -> Vec<DVec3> {
         let points: Vec<Option<Element>> = pieces.iter().map(middle).collect();
         let known: Vec<Element> = points.iter().flatten().copied().collect();

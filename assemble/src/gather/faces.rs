@@ -1,4 +1,4 @@
-//! Which face of a scene a point of its surface lies in.
+//! Finds the face of a scene in which a point lies.
 
 use equilux_bake::world::World;
 use equilux_formats::{Face, FaceId};
@@ -8,7 +8,7 @@ use glam::DVec3;
 #[derive(Debug)]
 pub struct Faces {
     faces: Vec<Face>,
-    /// Largest coordinate, metres: roundings are of its size.
+    /// Largest coordinate, metres, to which rounding is proportional.
     size: f64,
 }
 
@@ -18,15 +18,15 @@ pub struct CoplanarFaces<'a> {
     faces: Vec<(FaceId, &'a Face)>,
 }
 
-/// Normals that differ by less, and points that are nearer to a plane than this share of the scene, are in it: a few units
-/// in the last place of the f32 numbers that glTF stores.
-const NEAR: f64 = 1e-6;
+/// Maximum difference of normals, and maximum distance of points from a plane as a share of the scene's size, for
+/// lying in the plane: a few units in the last place of glTF's f32 coordinates.
+const COPLANAR_TOLERANCE: f64 = 1e-6;
 
-/// Cosine of the angle up to which a face may be the one that a surface belongs to.
-const ALIKE: f64 = 0.5;
+/// Minimum cosine of the angle between a surface and the face it may belong to.
+const MIN_NORMAL_COSINE: f64 = 0.5;
 
 impl Faces {
-    /// The faces that are in a world now.
+    /// The current faces of a world.
     pub fn of(world: &World) -> Self {
         let size = world.faces.iter().flat_map(|f| &f.corners).map(|p| p.abs().max_element());
         Self { faces: world.faces.clone(), size: size.fold(0.0, f64::max) }
@@ -37,12 +37,13 @@ impl Faces {
         CoplanarFaces { faces: vec![(face, &self.faces[face.index()])] }
     }
 
-    /// The faces in the plane through `point` with this normal or its opposite; the nearest face alone where corners that are
-    /// rounded leave none: a small face far from the origin is turned away from the large one that it was joined to.
+    /// The faces in the plane through `point` with this normal or its opposite. If rounded corners leave none, the
+    /// nearest face alone: a small face far from the origin may be tilted against the large one that it was joined
+    /// to.
     pub fn in_plane(&self, point: DVec3, normal: DVec3) -> CoplanarFaces<'_> {
         let lies = |face: &Face| {
-            face.normal.cross(normal).length() <= NEAR
-                && (face.corners[0] - point).dot(normal).abs() <= NEAR * self.size
+            face.normal.cross(normal).length() <= COPLANAR_TOLERANCE
+                && (face.corners[0] - point).dot(normal).abs() <= COPLANAR_TOLERANCE * self.size
         };
         let all = || self.faces.iter().enumerate().map(|(n, face)| (FaceId::from_index(n), face));
         let faces: Vec<_> = all().filter(|(_, face)| lies(face)).collect();
@@ -50,14 +51,14 @@ impl Faces {
             return CoplanarFaces { faces };
         }
         let distance = |face: &Face| face.normal.dot(point - face.corners[0]).abs().max(outside(face, point));
-        let alike = all().filter(|(_, face)| face.normal.dot(normal).abs() > ALIKE);
+        let alike = all().filter(|(_, face)| face.normal.dot(normal).abs() > MIN_NORMAL_COSINE);
         let nearest = alike.min_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)));
         CoplanarFaces { faces: nearest.into_iter().collect() }
     }
 }
 
 impl CoplanarFaces<'_> {
-    /// The face that holds the point, or whose edge is nearest to it; none if there is no face in the plane.
+    /// The face that contains the point, or whose edge is nearest to it; none if there is no face in the plane.
     pub fn face_at(&self, point: DVec3) -> Option<FaceId> {
         let nearest =
             self.faces.iter().min_by(|(_, a), (_, b)| outside(a, point).total_cmp(&outside(b, point)));
@@ -65,7 +66,7 @@ impl CoplanarFaces<'_> {
     }
 }
 
-/// How far a point in a face's plane lies outside of it at most, along the normals of its edges; negative inside.
+/// The maximum distance of a point in a face's plane beyond the face's edges, metres; negative inside.
 fn outside(face: &Face, point: DVec3) -> f64 {
     let corners = &face.corners;
     let beyond = |i: usize| {

@@ -1,11 +1,11 @@
-//! Surfaces that shine by themselves as few large polygons. In go the placed parts and the emission of their elements; out
-//! come senders that cover the elements that emit, none of them holding two kinds of light.
+//! Emitting surfaces as few large polygons. Input: the placed parts and the emission of their elements. Output:
+//! senders that cover the emitting elements, each with uniform emission.
 
 use crate::placed_parts::PlacedParts;
 use equilux_bake::elements::clusters::hierarchy;
 use equilux_formats::{ClusterTree, Corners, Element, Rgb};
 
-/// Senders, their hierarchy, and what each sends.
+/// Emitting polygons, their hierarchy and their emission.
 pub struct Surfaces {
     /// Polygons in faces of the world.
     pub elements: Vec<Element>,
@@ -15,7 +15,7 @@ pub struct Surfaces {
     pub emission: Vec<Rgb>,
 }
 
-/// All that emits.
+/// All emitting surfaces. `emission`: W/m², one row an element.
 pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> Surfaces {
     let mut found: Vec<(Element, Rgb)> = Vec::new();
     for k in 0..placed.instances.len() {
@@ -44,14 +44,14 @@ pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> Surfaces {
     Surfaces { elements, clusters, emission }
 }
 
-/// The emission of everything in a node, if it is the same.
+/// The emission of all elements of a node, if it is uniform.
 fn uniform(clusters: &ClusterTree, emission: &[Rgb], node: usize) -> Option<Rgb> {
     let Some([left, right]) = clusters.children_of(node) else { return Some(emission[node]) };
     let left = uniform(clusters, emission, left as usize)?;
     (uniform(clusters, emission, right as usize)? == left).then_some(left)
 }
 
-/// A node of an instance as an element, if it is a polygon of three or four corners.
+/// A node of an instance as an element, if it is a polygon with three or four corners.
 fn polygon(placed: &PlacedParts, instance: usize, node: usize) -> Option<Element> {
     let world = &placed.world;
     let number = world.nodes_of(instance).start + node;

@@ -1,6 +1,6 @@
-//! Light without extent: points, spots and parallel light. What a convex polygon receives is exact: every occluder hides
-//! a pyramid from the light, what is left of the polygon after all pyramids is lit, and a point of intensity I sends
-//! I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
+//! Lights without extent: points, spots and parallel light. The irradiance of a convex polygon is exact: every
+//! occluder hides a pyramid from the light, the remainder of the polygon outside all pyramids is lit, and a point of
+//! intensity I sends I·Ω into a polygon of solid angle Ω (van Oosterom & Strackee 1983).
 
 use crate::gather::cone::Cone;
 use crate::gather::receiver::receiver;
@@ -22,21 +22,21 @@ use std::f64::consts::PI;
 pub struct Lamp {
     /// Its name.
     pub name: String,
-    /// At most this arrives at the scene, W.
+    /// Maximum power that can arrive at the scene, W.
     pub power: Rgb,
-    /// Where it stands, metres; parallel light stands very far away.
+    /// Position, metres; parallel light is placed very far away.
     pub position: DVec3,
     /// Intensity, W/sr, linear RGB.
     pub intensity: Rgb,
-    /// Where it looks, and its cone, if it is a spot.
+    /// The cone and its direction, for a spot.
     pub cone: Option<Cone>,
 }
 
-/// Parallel light comes from this many sizes of the scene away: directions differ by less than 1e-6.
+/// Distance of parallel light, in sizes of the scene: directions differ by less than 1e-6.
 const FAR: f64 = 1e6;
 
 impl Lamp {
-    /// The lamp of a light of a scene around `centre` of this `size`, metres.
+    /// The lamp for a light of a scene around `centre` with this `size`, metres.
     pub fn of(light: &PunctualLight, centre: DVec3, size: f64) -> Self {
         let far = FAR * size;
         let (position, intensity) = match light.kind {
@@ -49,7 +49,7 @@ impl Lamp {
             LightKind::Spot { inner, outer } => Some(Cone::new(light.direction, inner, outer)),
             LightKind::Point | LightKind::Directional => None,
         };
-        // The solid angle of a ball around the scene.
+        // The solid angle of a sphere around the scene.
         let distance = (position - centre).length();
         let angle = if distance <= size { 4.0 * PI } else { PI * (size / distance).powi(2) };
         Self { name: light.name.clone(), power: intensity * angle, position, intensity, cone }
@@ -98,7 +98,8 @@ impl Lamp {
         self.intensity.map(|i| i * sent / area)
     }
 
-    /// Call `visit` with what every face hides of the plane that a polygon on `own` lies in, if it may stand before the polygon.
+    /// Call `visit` with the pyramid that each face hides of `plane`, for all faces that may occlude the polygon.
+    /// `own`: the polygon's face.
     fn pyramids(
         &self,
         world: &World,
@@ -121,7 +122,7 @@ impl Lamp {
         );
     }
 
-    /// ∫ I(ω)/I dω over a polygon as the light sees it.
+    /// ∫ I(ω)/I dω over a polygon, relative to the light's position, sr.
     fn share(&self, polygon: &[DVec3], normal: DVec3) -> f64 {
         self.cone.as_ref().map_or_else(|| solid_angle(polygon).abs(), |cone| cone.share(polygon, normal))
     }

@@ -1,7 +1,7 @@
-//! Light where somebody asks for it: the irradiance of pieces of surface from a scene in equilibrium.
+//! Evaluates the light of a solved scene at points and over pieces of surface.
 //!
-//! What shines by itself is seen sharply: its form factors are exact and averaged over the piece. What is reflected is
-//! smooth: its irradiance is gathered at points, with the same exact visibility.
+//! Light of emitting surfaces has sharp shadows: its form factors are exact and averaged over the piece. Reflected
+//! light is smooth: its irradiance is gathered at points, with the same exact visibility.
 //!
 //! ```text
 //! surfaces that shine, suns → direct, averaged over the piece
@@ -35,31 +35,31 @@ use glam::DVec3;
 use lamps::Lamp;
 use lights::Lights;
 
-/// What is nearer to a plane than this share of the region that is looked at lies in it: corners come from f32.
-const IN_PLANE: f64 = 1e-6;
+/// Points closer to a plane than this share of the examined region lie in it, since corners are stored as f32.
+const COPLANAR_TOLERANCE: f64 = 1e-6;
 
-/// A scene in equilibrium, ready to be asked.
+/// A solved scene whose light can be evaluated.
 #[derive(Debug)]
 pub struct Gather {
     world: World,
     faces: Faces,
     /// The instances of the scene.
     scene: Vec<usize>,
-    /// What they reflect, W/m²; zero for what was added.
+    /// Reflected radiosity of the scene's nodes, W/m²; zero for added senders.
     reflected: Vec<Rgb>,
-    /// The instances added for what shines sharply: surfaces and suns.
+    /// The instances added for emitting surfaces and suns.
     glowing: Vec<usize>,
     /// The instance of the sky, if there is one.
     sky: Option<usize>,
-    /// What all that was added sends, W/m²; zero for the scene.
+    /// Radiosity of the nodes of added senders, W/m²; zero for the scene.
     shining: Vec<Rgb>,
     lamps: Vec<Lamp>,
     resolution: Resolution,
 }
 
 impl Gather {
-    /// The placed scene with these lights. `emission` and `radiosity` are of all elements, W/m²; of a scene without
-    /// equilibrium as yet both are zero.
+    /// The placed scene with these lights. `emission` and `radiosity` of all elements, W/m²; both are zero for a
+    /// scene that is not solved yet.
     pub fn new(
         placed: &PlacedParts,
         emission: &[Rgb],
@@ -97,12 +97,12 @@ impl Gather {
         Self { world, faces, scene, reflected, glowing, sky, shining, lamps, resolution }
     }
 
-    /// The faces of the scene, to find the one that a point lies in.
+    /// The faces of the scene, for finding the face of a point.
     pub fn faces(&self) -> &Faces {
         &self.faces
     }
 
-    /// The world with everything in it.
+    /// The world of the scene and the added senders.
     pub fn world(&self) -> &World {
         &self.world
     }
@@ -112,19 +112,19 @@ impl Gather {
         &self.lamps
     }
 
-    /// Irradiance at points from surfaces that shine and from suns, W/m²; exact.
+    /// Exact irradiance at points from emitting surfaces and suns, W/m².
     pub fn glow(&self, points: &[Element]) -> Vec<Rgb> {
         self.from(points, &self.glowing, &self.shining, EXACT)
     }
 
-    /// Irradiance at points from all that reflects, and from the sky, W/m².
+    /// Irradiance at points from reflecting surfaces and from the sky, W/m².
     pub fn reflected(&self, points: &[Element]) -> Vec<Rgb> {
         let reflected = self.from(points, &self.scene, &self.reflected, self.resolution);
         let sky = self.from(points, self.sky.as_slice(), &self.shining, EXACT);
         reflected.into_iter().zip(sky).map(|(a, b)| a + b).collect()
     }
 
-    /// Irradiance at points from everything, W/m².
+    /// Irradiance at points from all light, W/m².
     pub fn irradiance(&self, points: &[Element]) -> Vec<Rgb> {
         let mut found = self.glow(points);
         found.iter_mut().zip(self.reflected(points)).for_each(|(sum, h)| *sum += h);
@@ -135,9 +135,9 @@ impl Gather {
         found
     }
 
-    /// Whether anything with corners on the lit side of the plane through `point` may lie in a box.
+    /// Whether any geometry with corners on the lit side of the plane through `point` may lie in a box.
     pub fn anything_before(&self, bounds: Aabb, point: DVec3, normal: DVec3) -> bool {
-        let slack = IN_PLANE * bounds.diagonal();
+        let slack = COPLANAR_TOLERANCE * bounds.diagonal();
         let before = |corner: &DVec3| normal.dot(*corner - point) > slack;
         let apart = |other: &Aabb| !other.meets(&bounds);
         self.world.occluders.any(apart, |occluder| occluder.corners.iter().any(before))
@@ -150,10 +150,10 @@ impl Gather {
         apply(&self.rows(points, senders, resolution), sent)
     }
 
-    /// The rows of points, columns through all nodes of the world.
+    /// The rows of form factors of points; columns count all nodes of the world.
     fn rows(&self, points: &[Element], senders: &[usize], resolution: Resolution) -> Rows {
         let request = Request::new(&self.world, Audience::Points(points), senders, resolution);
-        // Each call is short: the caller checks whether the run was stopped.
+        // Calls are short; the caller checks whether the run was stopped.
         block(&request, &Monitor::default()).expect("not stopped").block
     }
 }

@@ -1,4 +1,4 @@
-//! What shines into a scene but is none of its surfaces: the lights of its file, and a sky.
+//! Lights outside the scene's surfaces: the lights of its file, and the sky.
 
 use crate::gather::lamps::Lamp;
 use crate::gather::lights::{Lights, Sun};
@@ -13,16 +13,17 @@ use equilux_formats::{
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Luminous efficacy that Blender's exporter takes for watts, lm/W (Standard, PBR_WATTS_TO_LUMENS).
+/// Luminous efficacy that Blender's exporter assumes, lm/W (Standard, PBR_WATTS_TO_LUMENS).
 pub const LUMENS_PER_WATT: f64 = 683.0;
 
-/// Suns stand this many sizes of the scene away.
+/// Distance of suns, in sizes of the scene.
 const FAR: f64 = 1e4;
 
-/// Corners of a sun's outline are twice as many.
+/// Number of kites that form a sun; its outline has twice as many corners.
 const KITES: usize = 8;
 
-/// The lights of a scene that fills a world. `units` of their intensities; none for those that their files suggest.
+/// The lights of a scene that fills `world`. `units`: the units of their intensities; none for the units that each
+/// file suggests.
 pub fn lights(
     sources: &[PunctualLight],
     units: Option<LightUnits>,
@@ -42,7 +43,7 @@ pub fn lights(
     Lights { lamps: lamps.collect(), suns: suns.collect(), sky }
 }
 
-/// The middle of a world, and how far it reaches.
+/// The centre of a world and its diameter, metres.
 pub fn frame(world: &World) -> (DVec3, f64) {
     let around = Aabb::around(world.faces.iter().flat_map(|face| &face.corners));
     if around.is_empty() {
@@ -52,7 +53,7 @@ pub fn frame(world: &World) -> (DVec3, f64) {
     }
 }
 
-/// `light` with its intensity in W/sr or W/m².
+/// `light` with its intensity converted to W/sr or W/m².
 pub fn in_watts(light: &PunctualLight, units: Option<LightUnits>) -> PunctualLight {
     let factor = match (units.unwrap_or(light.units), light.kind) {
         (LightUnits::Radiometric, _) | (LightUnits::BlenderRaw, LightKind::Directional) => 1.0,
@@ -63,7 +64,7 @@ pub fn in_watts(light: &PunctualLight, units: Option<LightUnits>) -> PunctualLig
     PunctualLight { intensity, units: LightUnits::Radiometric, ..light.clone() }
 }
 
-/// A sun as polygons far away that send as much as parallel light of its intensity where it stands upright.
+/// A sun as polygons far away that send as much irradiance, at normal incidence, as parallel light of its intensity.
 fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> Sun {
     let distance = FAR * size;
     let middle = centre - light.direction * distance;

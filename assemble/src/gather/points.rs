@@ -1,5 +1,6 @@
-//! Light at single points of a scene's surfaces: in goes a table of places, out comes a table of their irradiance, gathered
-//! with exact visibility as that of lightmap texels is, beside that of the elements which the points lie on.
+//! Light at single points of a scene's surfaces. Input: a table of points. Output: a table of their irradiance,
+//! gathered with exact visibility like that of lightmap texels, together with the irradiance of the elements on which
+//! the points lie.
 
 use crate::gather::Gather;
 use crate::gather::receiver::receiver;
@@ -15,60 +16,61 @@ use rayon::prelude::*;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// The first line of the table that is written: the places as they were read (m, unit normal), the irradiance at the point,
-/// the number of the element there and the element's own irradiance (W/m², linear RGB).
+/// Columns of the written table: points as they were read (m, unit normal), irradiance at the point, number of the
+/// element and irradiance of the element (W/m², linear RGB).
 pub const COLUMNS: [&str; 13] =
     ["x", "y", "z", "nx", "ny", "nz", "H_r", "H_g", "H_b", "element", "He_r", "He_g", "He_b"];
 
-/// A point is on a surface if it is no further from it than this share of the scene: tables are written with six digits, and
-/// a quad of a table may be two triangles here that are not quite in one plane.
-const NEAR: f64 = 1e-4;
+/// Maximum distance of a point from a surface on which it lies, as a share of the scene's size: tables are written
+/// with six digits, and a quad in a table may be two triangles here that are not quite coplanar.
+const MAX_DISTANCE_SHARE: f64 = 1e-4;
 
-/// A surface looks the way of a point if the angle between them has at least this cosine.
-const ALIKE: f64 = 0.9;
+/// Minimum cosine of the angle between the normals of a point and its surface.
+const MIN_NORMAL_COSINE: f64 = 0.9;
 
-/// So many points are gathered at once; then it is asked whether to stop.
+/// Number of points that are gathered together; stop requests are checked between batches.
 const BATCH: usize = 256;
 
-/// A place on a surface.
+/// A point on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
-    /// Where, scene coordinates, metres.
+    /// Position in scene coordinates, metres.
     pub point: DVec3,
-    /// The way the surface looks, unit length.
+    /// Unit normal of the surface.
     pub normal: DVec3,
 }
 
-/// The light at a place.
+/// The light at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointLight {
-    /// The element that the place is on.
+    /// The element on which the point lies.
     pub element: usize,
-    /// Irradiance gathered at the very point, W/m².
+    /// Irradiance gathered at the point itself, W/m².
     pub irradiance: Rgb,
 }
 
-/// What a table of points should hold, and what to do if it does not.
+/// Expected contents of a table of points, and the remedy.
 const EXPECTED: [&str; 2] = [
-    "a table with a line a point, and numbers in columns named on the first line: x, y, z, nx, ny, nz, and for light H_r, H_g, H_b",
+    "a table with one line for each point, and numbers in columns named on the first line: x, y, z, nx, ny, nz, and for light H_r, H_g, H_b",
     "write the points as comma-separated values with such a first line",
 ];
 
-/// Read the places of a table with the columns `x`, `y`, `z`, `nx`, `ny` and `nz`; others are ignored. Fails if the file cannot
-/// be read, has no such columns or holds what is no finite number. Tables are in the coordinates of the scene's file, in which
-/// those of the scene begin at `origin`.
+/// Read the points of a table with the columns `x`, `y`, `z`, `nx`, `ny` and `nz`; other columns are ignored. Tables
+/// use the coordinates of the scene's file. `origin`: the origin of scene coordinates in those of the file, metres.
+/// Fails if the file cannot be read, lacks one of the columns, or holds a value that is not a finite number.
 pub fn read(file: &Path, origin: DVec3) -> Result<Vec<Place>> {
     places(&Table::read(file, EXPECTED)?, origin)
 }
 
-/// Read places and their irradiance, W/m², from `Hc_r`, `Hc_g` and `Hc_b` or from `H_r`, `H_g` and `H_b`. Fails as [`read`] does.
+/// Read points and their irradiance, W/m², from `Hc_r`, `Hc_g` and `Hc_b`, or from `H_r`, `H_g` and `H_b`. Fails as
+/// [`read`] does.
 pub fn read_light(file: &Path, origin: DVec3) -> Result<(Vec<Place>, Vec<Rgb>)> {
     let table = Table::read(file, EXPECTED)?;
     let names = if table.has("Hc_r") { ["Hc_r", "Hc_g", "Hc_b"] } else { ["H_r", "H_g", "H_b"] };
     Ok((places(&table, origin)?, table.colours(names)?))
 }
 
-/// The places of a table that is read. Fails as [`read`] does.
+/// The points of a table. Fails as [`read`] does.
 pub fn places(table: &Table, origin: DVec3) -> Result<Vec<Place>> {
     let (points, normals) = (table.vectors(["x", "y", "z"])?, table.vectors(["nx", "ny", "nz"])?);
     let place = |(row, (point, normal)): (usize, ([f64; 3], [f64; 3]))| {
@@ -79,11 +81,11 @@ pub fn places(table: &Table, origin: DVec3) -> Result<Vec<Place>> {
     points.into_iter().zip(normals).enumerate().map(place).collect()
 }
 
-/// Light at a point takes about as much time as this many rows of form factors.
+/// Cost of the light at a point, in rows of form factors.
 pub const ROWS_PER_POINT: f64 = 1.0;
 
-/// The light at places, none for those on no surface of these `elements`, which are the scene's. Fails if the monitor is
-/// stopped meanwhile; a stop before was meant for something else.
+/// The light at points; none for points on no surface of `elements`, the scene's elements. Fails if the monitor is
+/// stopped meanwhile; earlier stops only ended the exchange.
 pub fn light(
     gather: &Gather,
     elements: &[Element],
@@ -113,25 +115,25 @@ pub fn light(
     Ok(lights)
 }
 
-/// The nearest point on an element that looks the place's way, and the element, for each place that has one.
+/// For each point, the nearest point on an element that faces the same way, and that element, if there is one.
 pub fn located(elements: &[Element], places: &[Place]) -> Vec<Option<(Element, usize)>> {
     let index = RayIndex::new(elements);
     let around = Aabb::around(elements.iter().flat_map(|element| element.corners.as_slice()));
-    let reach = NEAR * around.diagonal();
+    let reach = MAX_DISTANCE_SHARE * around.diagonal();
     let locate = |place: &Place| {
         let start = place.point + place.normal * reach;
         let along = -2.0 * reach * place.normal;
         let hit = index.first_front(start, along).filter(|hit| hit.distance <= 1.0)?;
         let element = &elements[hit.element];
-        let looks_alike = element.normal.dot(place.normal) >= ALIKE;
+        let looks_alike = element.normal.dot(place.normal) >= MIN_NORMAL_COSINE;
         let point = || receiver(start + along * hit.distance, element.normal, element.face);
         looks_alike.then(|| (point(), hit.element))
     };
     places.par_iter().map(locate).collect()
 }
 
-/// Write the table of places, in the coordinates that they were read in, with their light. `irradiance`: that of all
-/// elements, W/m². Fails if it cannot be written.
+/// Write the table of points, in the coordinates in which they were read, with their light. `irradiance`: that of all
+/// elements, W/m². Fails if the file cannot be written.
 pub fn write(
     path: &Path,
     places: &[Place],

@@ -1,6 +1,8 @@
-//! The sky as far polygons: the six sides of a cube around the scene, each in cells that look equally wide from its middle.
+//! The sky as far polygons: the six sides of a cube around the scene, each divided into cells of equal angular width
+//! seen from its centre.
 //!
-//! What a sky sends changes no visibility: its cells stay, and each sends what the sky has there on average.
+//! The radiance of the sky does not change visibility: the cells are fixed, and each sends the mean radiance of the
+//! sky in it.
 
 use equilux_bake::elements::clusters::hierarchy;
 use equilux_bake::oven::keys::SKY_CELLS;
@@ -11,7 +13,7 @@ use image::{DynamicImage, ImageFormat, ImageReader, ImageResult};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use std::path::{Path, PathBuf};
 
-/// What shines from all around.
+/// The radiance of the sky.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Sky {
     /// The same radiance everywhere, W/(m² sr).
@@ -20,10 +22,10 @@ pub enum Sky {
     Picture(PathBuf),
 }
 
-/// The cube's sides are this many sizes of the scene away, so directions differ by less than 1e-3.
+/// Distance of the cube's sides, in sizes of the scene: directions differ by less than 1e-3.
 const FAR: f64 = 1e3;
 
-/// The sky's cells around a scene, without light.
+/// The sky's cells around a scene of this centre and size, metres.
 pub fn dome(centre: DVec3, size: f64) -> Geometry {
     let mut faces = Vec::new();
     let mut elements = Vec::new();
@@ -59,7 +61,7 @@ pub enum Radiances {
 }
 
 impl Sky {
-    /// The file it is in, if it is in one.
+    /// The picture's file, if the sky is a picture.
     pub fn file(&self) -> Option<&Path> {
         match self {
             Self::Uniform(_) => None,
@@ -67,7 +69,7 @@ impl Sky {
         }
     }
 
-    /// Its radiances. Fails where the picture cannot be read.
+    /// Load the radiances. Fails if the picture cannot be read.
     pub fn read(&self) -> Result<Radiances> {
         Ok(match self {
             Self::Uniform(radiance) => Radiances::Uniform(*radiance),
@@ -77,7 +79,7 @@ impl Sky {
 }
 
 impl Radiances {
-    /// What each cell of a dome around `centre` sends, W/m².
+    /// The radiosity of each cell of a dome around `centre`, W/m².
     pub fn radiosity(&self, dome: &Geometry, centre: DVec3) -> Vec<Rgb> {
         let radiance = |cell: &Element| match self {
             Self::Uniform(radiance) => *radiance,
@@ -117,7 +119,7 @@ impl Picture {
         Ok(Self { width: image.width() as usize, height: image.height() as usize, pixels })
     }
 
-    /// The mean over a cell, by points about as dense as the pixels.
+    /// The mean radiance over a cell, from points about as dense as the pixels.
     fn average(&self, cell: &Element, centre: DVec3) -> Rgb {
         let points = (self.width / (4 * SKY_CELLS)).clamp(4, 64);
         let &[a, b, c, d] = cell.corners.as_slice() else { unreachable!("cells have four corners") };
@@ -125,7 +127,7 @@ impl Picture {
         for k in 0..points * points {
             let [s, t] = [k % points, k / points].map(|n| (n as f64 + 0.5) / points as f64);
             let p = a * (1.0 - s) * (1.0 - t) + b * s * (1.0 - t) + c * s * t + d * (1.0 - s) * t - centre;
-            // The solid angle of a piece of plane.
+            // Proportional to the solid angle of a piece of the plane.
             let weight = p.length().powi(-3);
             let radiance = self.at(p);
             (0..3).for_each(|channel| sum[channel] += weight * f64::from(radiance[channel]));

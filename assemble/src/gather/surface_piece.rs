@@ -1,10 +1,10 @@
-//! Planar convex pieces of surface: their grids and their centres.
+//! Planar convex pieces of surface, their grids and their centres.
 
 use crate::gather::faces::CoplanarFaces;
 use equilux_bake::geometry::polygon::{Polygon, part};
 use glam::DVec3;
 
-/// A planar convex piece of surface, seen from its lit side.
+/// A planar convex piece of surface with its lit side.
 #[derive(Debug)]
 pub struct SurfacePiece<'a> {
     /// Corners, counter-clockwise, metres.
@@ -15,7 +15,7 @@ pub struct SurfacePiece<'a> {
     pub plane: &'a CoplanarFaces<'a>,
 }
 
-/// A polygon cut into a grid of `count` × `count` cells, along its first edge and across it.
+/// Divide a polygon into a grid of `count` × `count` cells, along its first edge and across it.
 pub fn cells(polygon: &[DVec3], count: usize) -> Vec<Polygon> {
     let whole: Polygon = polygon.iter().copied().collect();
     if count == 1 {
@@ -31,7 +31,7 @@ pub fn cells(polygon: &[DVec3], count: usize) -> Vec<Polygon> {
     cells
 }
 
-/// `cell` cut into the strips that `count` equal steps of the extent of `polygon` along an axis make.
+/// Divide `cell` into the strips given by `count` equal steps of the extent of `polygon` along an axis.
 fn strips(cell: Polygon, polygon: &[DVec3], axis: DVec3, count: usize) -> Vec<Polygon> {
     let along = |p: DVec3| axis.dot(p - polygon[0]);
     let extent = polygon.iter().map(|&p| along(p));
@@ -49,7 +49,7 @@ fn strips(cell: Polygon, polygon: &[DVec3], axis: DVec3, count: usize) -> Vec<Po
     strips
 }
 
-/// The centre of area of a polygon with this unit normal, and its area.
+/// The centroid and the area of a polygon with this unit normal.
 pub fn centre(polygon: &[DVec3], normal: DVec3) -> (DVec3, f64) {
     let origin = polygon[0];
     let (mut sum, mut double) = (DVec3::ZERO, 0.0);

@@ -1,9 +1,9 @@
-//! Where every instance's charts lie in the lightmap. In go a scene's parts and instances; out come images' sizes and a
-//! place in them for each chart of each instance.
+//! The layout of all charts in the lightmap. Input: a scene's parts and instances. Output: the sizes of the images,
+//! and the position of each chart of each instance in them.
 //!
-//! Charts are laid out once for each part and scale, on one or more sheets; each instance gets its own place for every
-//! sheet. So instances share their mesh with its texture coordinates, but not their light. A layout that the author made
-//! is kept where it can be.
+//! Charts are laid out once for each part and scale, on one or more sheets; each instance gets its own position for
+//! every sheet. Instances thus share their mesh and its texture coordinates, but not their light. A layout by the
+//! author is kept where possible.
 
 use super::authored::Sheets;
 use super::chart::{Chart, charts};
@@ -14,23 +14,23 @@ use equilux_formats::{Error, PartId, Result, Scene};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// The longest side of an image, texels; every graphics card of the last ten years takes it.
-const LONGEST: u32 = 4096;
-/// More texels than sixteen such images are a mistake in the texel size, not a lightmap.
-const MOST_TEXELS: f64 = 16.0 * LONGEST as f64 * LONGEST as f64;
+/// Maximum side of an image, texels; all graphics cards of the last ten years support it.
+const MAX_SIDE: u32 = 4096;
+/// Maximum number of texels, sixteen such images; more indicate a mistake in the texel size.
+const MAX_TEXELS: f64 = 16.0 * MAX_SIDE as f64 * MAX_SIDE as f64;
 
-/// The lightmap's plan.
+/// The layout of the lightmap.
 #[derive(Debug, Clone)]
 pub struct Atlas {
     /// The size of texels, metres.
     pub texel_size: f64,
-    /// How charts are laid out, for each part and scale.
+    /// The layouts of charts, one for each part and scale.
     pub layouts: Vec<Layout>,
-    /// Where the instances' sheets lie.
+    /// The positions of the instances' sheets.
     pub instances: Vec<Placement>,
     /// The sizes of the images, texels.
     pub images: Vec<[u32; 2]>,
-    /// What a person should know of it, one sentence each.
+    /// Notes for the report, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -41,60 +41,61 @@ pub struct Layout {
     pub part: PartId,
     /// The charts.
     pub charts: Arc<[Chart]>,
-    /// A grid for each chart.
+    /// The grid of each chart.
     pub grids: Vec<Grid>,
-    /// Where each chart lies on the sheets.
+    /// The position of each chart on the sheets.
     pub spots: Vec<Spot>,
     /// The sizes of the sheets, texels.
     pub sheets: Vec<[u32; 2]>,
-    /// How many texels of each sheet's border texture coordinates leave out, so that an author's are as they were.
+    /// Width of the border of each sheet that texture coordinates exclude, texels, so that the author's coordinates
+    /// are unchanged.
     pub border: u32,
 }
 
 /// An instance in the lightmap.
 #[derive(Debug, Clone)]
 pub struct Placement {
-    /// Its layout.
+    /// Index of its layout.
     pub layout: usize,
-    /// Where its layout's sheets lie in the images.
+    /// The positions of its layout's sheets in the images.
     pub sheets: Vec<Spot>,
 }
 
 /// A chart of an instance in the lightmap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tile {
-    /// The instance, by number.
+    /// Index of the instance.
     pub instance: usize,
-    /// The chart of its part, by number.
+    /// Index of the chart in its part.
     pub chart: usize,
-    /// Its rectangle's place, margin included.
+    /// Position of its rectangle, including the margin.
     pub spot: Spot,
-    /// Its rectangle's size, margin included, texels.
+    /// Size of its rectangle, including the margin, texels.
     pub size: [u32; 2],
 }
 
 impl Tile {
-    /// How many texels its rectangle has.
+    /// Number of texels of its rectangle.
     pub fn texels(&self) -> usize {
         self.size[0] as usize * self.size[1] as usize
     }
 }
 
 impl Atlas {
-    /// The atlas of `scene` with texels of `texel_size` metres, or of a size that makes about 1024² of them. Fails where
-    /// that would be more than images can hold.
+    /// The atlas of `scene` with texels of `texel_size` metres, or of a size that results in about 1024² texels.
+    /// Fails if the texels exceed the limits of images.
     pub fn new(scene: &Scene, texel_size: Option<f64>) -> Result<Self> {
         let mut parts: Vec<PartCharts> = scene.parts.iter().map(PartCharts::of).collect();
         let estimate = Estimate::of(scene, &parts);
         let texel_size = texel_size.unwrap_or_else(|| estimate.suitable_size());
-        if estimate.texels(texel_size) > MOST_TEXELS {
+        if estimate.texels(texel_size) > MAX_TEXELS {
             let found = format!("texels of {texel_size} m would be {:.1e}", estimate.texels(texel_size));
-            return Err(too_fine(scene, found, format!("at most {MOST_TEXELS:.0e}")));
+            return Err(too_fine(scene, found, format!("at most {MAX_TEXELS:.0e}")));
         }
         let (mut layouts, mut known) = (Vec::new(), HashMap::new());
         let mut of_instance = Vec::new();
         for instance in &scene.instances {
-            // Scales that differ by rounding only share a layout.
+            // Scales that differ only by rounding share a layout.
             let key = (instance.part, (instance.scale().ln() * 1e6).round() as i64);
             let layout = *known.entry(key).or_insert(layouts.len());
             if layout == layouts.len() {
@@ -107,7 +108,7 @@ impl Atlas {
         let named =
             scene.parts.iter().zip(parts).filter_map(|(part, charts)| Some((&part.name, charts.refused?)));
         let notes = named.map(|(name, why)| {
-            format!("TEXCOORD_1 of part `{name}` {why}: its lightmap is laid out anew, as in lightmapped.glb")
+            format!("TEXCOORD_1 of part `{name}` {why}: its lightmap has a new layout, as in lightmapped.glb")
         });
         Ok(Self { texel_size, notes: notes.collect(), layouts, instances, images })
     }
@@ -140,7 +141,7 @@ impl Atlas {
 
 fn lay_out(scene: &Scene, part: PartId, charts: &mut PartCharts, texel: f64) -> Result<Layout> {
     if let Some(authored) = &charts.authored {
-        match authored.lay_out(texel, LONGEST) {
+        match authored.lay_out(texel, MAX_SIDE) {
             Ok(Sheets { grids, spots, sheets }) => {
                 let charts = authored.charts.clone().into();
                 return Ok(Layout { part, charts, grids, spots, sheets, border: MARGIN });
@@ -155,12 +156,12 @@ fn lay_out(scene: &Scene, part: PartId, charts: &mut PartCharts, texel: f64) -> 
 fn lay_out_own(scene: &Scene, part: PartId, charts: Arc<[Chart]>, texel: f64) -> Result<Layout> {
     let grids: Vec<Grid> = charts.iter().map(|chart| Grid::new(chart, texel)).collect();
     let sizes: Vec<[u32; 2]> = grids.iter().map(|grid| grid.size).collect();
-    if let Some([width, height]) = sizes.iter().find(|size| size.iter().any(|&side| side > LONGEST)) {
+    if let Some([width, height]) = sizes.iter().find(|size| size.iter().any(|&side| side > MAX_SIDE)) {
         let name = &scene.parts[part.index()].name;
         let found = format!("a surface of part {name} takes {width} × {height} texels");
-        return Err(too_fine(scene, found, format!("at most {LONGEST} × {LONGEST}")));
+        return Err(too_fine(scene, found, format!("at most {MAX_SIDE} × {MAX_SIDE}")));
     }
-    let packed = pack(&sizes, LONGEST);
+    let packed = pack(&sizes, MAX_SIDE);
     Ok(Layout { part, charts, grids, spots: packed.spots, sheets: packed.images, border: 0 })
 }
 
@@ -168,11 +169,11 @@ fn too_fine(scene: &Scene, found: String, expected: String) -> Error {
     Error::new(&scene.file, found, expected, "choose larger texels with --texel-size METRES")
 }
 
-/// A place for each sheet of each instance.
+/// A position for each sheet of each instance.
 fn place(layouts: &[Layout], of_instance: &[usize]) -> (Vec<Placement>, Vec<[u32; 2]>) {
     let sheets: Vec<[u32; 2]> =
         of_instance.iter().flat_map(|&layout| layouts[layout].sheets.clone()).collect();
-    let packed = pack(&sheets, LONGEST);
+    let packed = pack(&sheets, MAX_SIDE);
     let mut spots = packed.spots.into_iter();
     let instances = of_instance.iter().map(|&layout| {
         let sheets = spots.by_ref().take(layouts[layout].sheets.len()).collect();

@@ -1,8 +1,8 @@
-//! The author's own lightmap layout (TEXCOORD_1). In goes a part; out come its charts with the maps that lay them out,
-//! if the layout is one that light can be kept in.
+//! The author's lightmap layout (TEXCOORD_1). Input: a part. Output: its charts and the maps that lay them out, if
+//! the layout is suitable for light.
 //!
-//! Sides are of one chart where they touch both on the part and in the layout. Backs of double-sided surfaces have a
-//! sheet of their own, laid out like the fronts.
+//! Sides belong to the same chart where they touch both on the part and in the layout. Backs of double-sided surfaces
+//! get a sheet of their own with the layout of the fronts.
 
 use super::bands::bands;
 use super::chart::Chart;
@@ -17,27 +17,26 @@ use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_formats::{Corners, Part};
 use glam::{DAffine3, DVec2, DVec3};
 
-/// How far places may be off, in widths of the layout: a tenth of a texel of 4096, or a step of 16-bit coordinates and a
-/// half.
-const STEP: f64 = 2.5e-5;
-/// A layout whose charts are too near each other for the texels asked for gets more of them, up to so many times in each
-/// direction.
-const FINER: [f64; 3] = [1.0, 2.0, 4.0];
+/// Tolerance of positions, as a share of the layout's width: a tenth of a texel of 4096, or one and a half steps of
+/// 16-bit coordinates.
+const POSITION_TOLERANCE: f64 = 2.5e-5;
+/// Factors by which the texel count in each direction is increased if charts are too close to each other.
+const REFINEMENTS: [f64; 3] = [1.0, 2.0, 4.0];
 
-/// A layout whose image has so many times the texels that its surfaces need is not kept: a single surface that is laid
-/// out far too small can ask for any number.
-const SPARSE: f64 = 16.0;
+/// A layout is rejected if its image needs more than this many times the texels of its surfaces: a single surface
+/// that is far too small in the layout could require any number of texels.
+const MAX_WASTE: f64 = 16.0;
 
 /// A part's charts in its author's layout.
 #[derive(Debug, Clone)]
 pub struct AuthoredLayout {
     /// The charts, fronts first.
     pub charts: Vec<Chart>,
-    /// For each chart the maps of its planes to the layout, whose width and height are 1.
+    /// For each chart, the maps from its planes to the layout, which is the unit square.
     maps: Vec<Vec<Map>>,
-    /// How many charts are fronts.
+    /// Number of charts that are fronts.
     fronts: usize,
-    /// The longest piece of surface that the layout's width covers, metres.
+    /// The longest distance on a surface that the layout's width covers, metres.
     pub stretch: f64,
 }
 
@@ -46,14 +45,14 @@ pub struct AuthoredLayout {
 pub struct Sheets {
     /// The grid of each chart.
     pub grids: Vec<Grid>,
-    /// Where each chart lies.
+    /// The position of each chart.
     pub spots: Vec<Spot>,
     /// The sizes of the sheets, texels; the layout lies within a margin.
     pub sheets: Vec<[u32; 2]>,
 }
 
 impl AuthoredLayout {
-    /// The layout of `part`, nothing if it has none, or why it cannot be kept.
+    /// The author's layout of `part`: none if there is none, or the reason why it cannot be used.
     pub fn of(part: &Part) -> Option<Result<Self, &'static str>> {
         part.surfaces.iter().any(|surface| surface.lightmap.is_some()).then(|| Self::read(part))
     }
@@ -63,12 +62,9 @@ impl AuthoredLayout {
         let (fronts, backs) = sides.split_at(part.surfaces.len());
         let places: Vec<&[DVec2]> =
             fronts.iter().map(places).collect::<Option<_>>().ok_or("is not on all surfaces")?;
-        if places
-            .iter()
-            .copied()
-            .flatten()
-            .any(|place| place.min_element() < -STEP || place.max_element() > 1.0 + STEP)
-        {
+        if places.iter().copied().flatten().any(|place| {
+            place.min_element() < -POSITION_TOLERANCE || place.max_element() > 1.0 + POSITION_TOLERANCE
+        }) {
             return Err("reaches outside 0 to 1");
         }
         if any_overlap(places.iter().map(|places| flat(places)), DVec3::Z) {
@@ -84,13 +80,13 @@ impl AuthoredLayout {
             }
         }
         let area: f64 = sides.iter().map(|side| side.area).sum();
-        if authored.stretch.powi(2) * authored.sheets() as f64 > SPARSE * area {
+        if authored.stretch.powi(2) * authored.sheets() as f64 > MAX_WASTE * area {
             return Err("fills too little of its image");
         }
         Ok(authored)
     }
 
-    /// Add a chart of these sides.
+    /// Add a chart of these sides. None if a side has no area in the layout.
     fn add(&mut self, sides: Vec<SurfaceSide>) -> Option<()> {
         let (mut maps, mut planes): (Vec<Map>, Vec<usize>) = (vec![], vec![]);
         for side in &sides {
@@ -100,7 +96,8 @@ impl AuthoredLayout {
             let map = Map::through(own.map(|i| corners[i]), own.map(|i| places[i]), side.normal)?;
             let fits = |known: &Map| {
                 let back = |(place, corner): (&DVec2, &DVec3)| {
-                    (known.patch.point(*place) - corner).length() <= STEP * known.patch.stretch()
+                    (known.patch.point(*place) - corner).length()
+                        <= POSITION_TOLERANCE * known.patch.stretch()
                 };
                 places.iter().zip(corners).all(back) && known.patch.normal.dot(side.normal) > 0.0
             };
@@ -115,15 +112,16 @@ impl AuthoredLayout {
         Some(())
     }
 
-    /// How many sheets there are.
+    /// Number of sheets.
     pub fn sheets(&self) -> usize {
         if self.fronts == 0 || self.fronts == self.charts.len() { 1 } else { 2 }
     }
 
-    /// The layout with texels of at most `texel` metres on sheets of at most `limit` texels a side, or why that cannot be.
+    /// The layout with texels of at most `texel` metres on sheets of at most `limit` texels on each side, or the
+    /// reason why that is impossible.
     pub fn lay_out(&self, texel: f64, limit: u32) -> Result<Sheets, &'static str> {
         let least = (self.stretch / texel).ceil().max(1.0);
-        for finer in FINER {
+        for finer in REFINEMENTS {
             let count = least * finer;
             if count + f64::from(2 * MARGIN) > f64::from(limit) {
                 return Err("is too small for these texels");
@@ -140,7 +138,7 @@ impl AuthoredLayout {
         let grid = |maps: &Vec<Map>, chart: &Chart| {
             let all =
                 || chart.sides.iter().filter_map(places).flatten().map(|place| place * f64::from(count));
-            // Margins included, as the sheet has the same ones.
+            // Includes margins, since the sheet has the same ones.
             let low = all().fold(DVec2::INFINITY, DVec2::min).floor().max(DVec2::ZERO).as_uvec2();
             let high =
                 all().fold(DVec2::ZERO, DVec2::max).ceil().min(DVec2::splat(f64::from(count))).as_uvec2();
@@ -160,7 +158,7 @@ impl AuthoredLayout {
         }
     }
 
-    /// Whether lookups of two charts use the same texel: those with some of the chart in them, and their neighbours.
+    /// Whether bilinear lookups of two charts use the same texel: texels with part of a chart, and their neighbours.
     fn share_texels(&self, sheets: &Sheets) -> bool {
         let width = sheets.sheets[0][0] as usize;
         let mut owners = vec![0; width * width * sheets.sheets.len()];
@@ -185,7 +183,7 @@ fn places(side: &SurfaceSide) -> Option<&[DVec2]> {
     Some(&side.lightmap.as_ref()?[..side.corners.as_slice().len()])
 }
 
-/// Places as a polygon in the plane z = 0, counter-clockwise however they lie.
+/// Layout positions as a polygon in the plane z = 0, always counter-clockwise.
 fn flat(places: &[DVec2]) -> Corners {
     let point = |place: &DVec2| place.extend(0.0);
     let corners = match places {
@@ -196,14 +194,14 @@ fn flat(places: &[DVec2]) -> Corners {
     if corners.double_area_vector().z < 0.0 { corners.flipped() } else { corners }
 }
 
-/// Sides in groups that touch each other both on the part and in the layout, and are of one material.
+/// Groups of sides of one material that touch each other both on the part and in the layout.
 fn groups(sides: &[SurfaceSide]) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(sides.len());
     for contact in opposed_contacts(sides) {
         let [a, b] = contact.sides;
         let together = contact.ends.iter().all(|&end| {
             let [p, q] = [a, b].map(|side| place_on(&sides[side], end));
-            p.zip(q).is_some_and(|(p, q)| (p - q).abs().max_element() <= STEP)
+            p.zip(q).is_some_and(|(p, q)| (p - q).abs().max_element() <= POSITION_TOLERANCE)
         });
         if together && sides[a].material == sides[b].material {
             sets.join(a, b);
@@ -212,7 +210,7 @@ fn groups(sides: &[SurfaceSide]) -> Vec<Vec<usize>> {
     sets.into_sets()
 }
 
-/// Where a point on a side's outline lies in the layout.
+/// The position in the layout of a point on a side's outline.
 fn place_on(side: &SurfaceSide, point: DVec3) -> Option<DVec2> {
     let (corners, places) = (side.corners.as_slice(), places(side)?);
     let own = [0, 1, corners.len() - 1];

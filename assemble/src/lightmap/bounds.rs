@@ -1,22 +1,22 @@
-//! The smallest rectangle around a chart in its plane.
+//! The smallest rectangle around a chart, in the chart's plane.
 
 use super::chart::Chart;
 use equilux_bake::geometry::polygon::convex_hull;
 use glam::{DVec2, DVec3, dvec2};
 
-/// The rectangle around a chart in its plane, turned so that its area is smallest.
+/// The rectangle of smallest area around a chart, in the chart's plane.
 pub struct Bounds {
-    /// Unit vectors along its edges; their product is the chart's direction.
+    /// Unit vectors along its edges; their cross product is the chart's direction.
     pub axes: [DVec3; 2],
     /// Its lowest corner along them, metres.
     pub low: DVec2,
-    /// Metres.
+    /// Its extent along them, metres.
     pub extent: DVec2,
 }
 
 impl Bounds {
-    /// The smallest rectangle: one of its edges lies on an edge of the convex hull (Freeman & Shapira 1975). Of equal
-    /// ones that on the longest edge.
+    /// The smallest rectangle, one edge of which lies on an edge of the convex hull (Freeman & Shapira 1975). Among
+    /// equal ones, the one on the longest edge.
     pub fn of(chart: &Chart) -> Self {
         let corners = chart.sides.iter().flat_map(|side| side.corners.as_slice());
         let flat = corners.map(|&p| p - chart.direction * p.dot(chart.direction));

@@ -1,9 +1,9 @@
-//! Charts: connected sides of one material that can be laid out in a plane together. In goes a part; out come its
-//! charts, each side in exactly one of them.
+//! Charts: connected sides of one material that can be laid out in a plane together. Input: a part. Output: its
+//! charts; each side belongs to exactly one of them.
 //!
 //! A chart grows from its largest side over smooth contacts, as long as sides face the chart's direction to within
-//! [`SMOOTH`], so that no texel is stretched by more than 1/cos 30° = 1.15. So it is a height field over a plane, unless
-//! it runs around and covers itself; then each of its flat pieces is a chart of its own.
+//! [`SMOOTH`], so that no texel is stretched by more than 1/cos 30° = 1.15. It is therefore a height field over a
+//! plane, unless it winds around and covers itself; in that case each of its flat regions becomes a chart of its own.
 
 use super::contacts::{SMOOTH, smooth_contacts};
 use super::overlap::any_overlap;
@@ -12,26 +12,26 @@ use equilux_bake::geometry::planes;
 use equilux_formats::{Face, MaterialId, Part};
 use glam::DVec3;
 
-/// Sides that share a piece of the lightmap.
+/// Sides that share a region of the lightmap.
 #[derive(Debug, Clone)]
 pub struct Chart {
-    /// Unit vector from which each place of the chart is seen at most once.
+    /// Unit vector of projection: each point of the chart has a distinct projection along it.
     pub direction: DVec3,
-    /// The material of all.
+    /// The material of all sides.
     pub material: MaterialId,
     /// The sides.
     pub sides: Vec<SurfaceSide>,
-    /// Which of them lie in one plane: a number for each side, counted from 0 without gaps.
+    /// For each side the index of its plane, counted from 0 without gaps.
     pub planes: Vec<usize>,
 }
 
 impl Chart {
-    /// How many planes it lies in.
+    /// Number of planes.
     pub fn plane_count(&self) -> usize {
         self.planes.iter().max().map_or(0, |&last| last + 1)
     }
 
-    /// The largest of the sides in a plane: its plane is known best.
+    /// The largest side in a plane, which determines the plane most accurately.
     pub fn largest_in(&self, plane: usize) -> &SurfaceSide {
         let sides = self.sides.iter().zip(&self.planes).filter(|(_, of)| **of == plane);
         sides.map(|(side, _)| side).max_by(|a, b| a.area.total_cmp(&b.area)).expect("a plane has a side")
@@ -81,7 +81,7 @@ impl Growth {
         self.sides[seed].normal.dot(self.sides[side].normal) >= SMOOTH.cos()
     }
 
-    /// `members` in connected groups, each grown from its largest side over those that `fit` it.
+    /// Divide `members` into connected groups, each grown from its largest side over sides for which `fit` holds.
     fn groups(&self, members: &[usize], fit: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
         let mut free = vec![false; self.sides.len()];
         members.iter().for_each(|&side| free[side] = true);
@@ -107,8 +107,8 @@ impl Growth {
         groups
     }
 
-    /// Whether two places of a bent group lie behind one another. Places of a flat one never do: where its sides
-    /// overlap they are the same place with the same light.
+    /// Whether two points of a curved group lie behind one another. In a flat group, overlapping sides are the same
+    /// points with the same light.
     fn covers_itself(&self, members: &[usize]) -> bool {
         let direction = self.sides[members[0]].normal;
         members.iter().any(|&side| self.plane[side] != self.plane[members[0]])

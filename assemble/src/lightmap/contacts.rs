@@ -1,7 +1,7 @@
-//! Where sides touch along their edges, and where light runs smoothly from one to the next.
+//! Contacts of sides along their edges, and the contacts across which light is smooth.
 //!
-//! In go sides in one system of coordinates; out come pairs of them with the piece of edge they share. Edges need not
-//! have equal ends: a long one may meet several short ones.
+//! Input: sides in one coordinate system. Output: pairs of sides with the segment of edge that they share. Edges need
+//! not have equal ends: a long edge may meet several short ones.
 
 use super::side::SurfaceSide;
 use equilux_bake::geometry::aabb::Aabb;
@@ -9,27 +9,28 @@ use equilux_bake::geometry::tolerance::FLATNESS;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_6;
 
-/// Sides that meet at no more than this angle count as one bent surface, radians: a cylinder of twelve sides does.
+/// Sides that meet at an angle of at most this belong to one curved surface, radians: for example, a cylinder with
+/// twelve sides.
 pub const SMOOTH: f64 = FRAC_PI_6 * (1.0 + 1e-9);
 
-/// Two sides with a piece of edge in common.
+/// Two sides with a common segment of edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The sides, by number, the lower one first.
+    /// The indices of the sides, the lower one first.
     pub sides: [usize; 2],
-    /// Where the piece begins and ends, metres.
+    /// The ends of the segment, metres.
     pub ends: [DVec3; 2],
-    /// Whether the sides run along it in opposite directions, as neighbours of one orientation do.
+    /// Whether the sides traverse the segment in opposite directions, as neighbours with the same orientation do.
     opposed: bool,
 }
 
-/// The contacts of neighbours of one orientation, however they are bent.
+/// The contacts of neighbours with the same orientation, at any angle.
 pub fn opposed_contacts(sides: &[SurfaceSide]) -> impl Iterator<Item = Contact> {
     contacts(sides, tolerance(sides)).into_iter().filter(|contact| contact.opposed)
 }
 
-/// The contacts across which light changes smoothly: the sides face the same way to within [`SMOOTH`], and no third
-/// side stands on the edge and parts the light on them.
+/// The contacts across which light changes smoothly: the sides' normals differ by at most [`SMOOTH`], and no third
+/// side stands on the edge and separates the light on them.
 pub fn smooth_contacts(sides: &[SurfaceSide]) -> Vec<Contact> {
     let tolerance = tolerance(sides);
     let all = contacts(sides, tolerance);
@@ -41,20 +42,26 @@ pub fn smooth_contacts(sides: &[SurfaceSide]) -> Vec<Contact> {
         let [a, b] = contact.sides.map(|side| sides[side].normal);
         contact.opposed && a.dot(b) >= SMOOTH.cos() && {
             let front = (a + b).normalize();
-            !of_side[contact.sides[0]].iter().any(|other| parts(contact, other, sides, front, tolerance))
+            !of_side[contact.sides[0]].iter().any(|other| separates(contact, other, sides, front, tolerance))
         }
     };
     all.iter().filter(smooth).copied().collect()
 }
 
-/// What lengths may be off by: the coordinates' rounding, a few times over.
+/// Tolerance of lengths: several times the rounding of coordinates.
 fn tolerance(sides: &[SurfaceSide]) -> f64 {
     let corners = sides.iter().flat_map(|side| side.corners.as_slice());
     4.0 * FLATNESS * corners.map(|p| p.abs().max_element()).fold(0.0, f64::max)
 }
 
-/// Whether the third side that `other` leads to stands on `contact` and rises before its sides, towards `front`.
-fn parts(contact: &Contact, other: &Contact, sides: &[SurfaceSide], front: DVec3, tolerance: f64) -> bool {
+/// Whether the third side of contact `other` stands on `contact` and rises in front of its sides, towards `front`.
+fn separates(
+    contact: &Contact,
+    other: &Contact,
+    sides: &[SurfaceSide],
+    front: DVec3,
+    tolerance: f64,
+) -> bool {
     let Some(third) = other.sides.into_iter().find(|side| !contact.sides.contains(side)) else {
         return false;
     };
@@ -63,14 +70,15 @@ fn parts(contact: &Contact, other: &Contact, sides: &[SurfaceSide], front: DVec3
     rises && shared(contact.ends, other.ends, tolerance).is_some()
 }
 
-/// An edge of a side, and where it begins and ends along the axis of the sweep.
+/// An edge of a side, and its extent along the sweep axis.
 struct Edge {
     side: usize,
     ends: [DVec3; 2],
     reach: [f64; 2],
 }
 
-/// All contacts longer than the tolerance. A sweep along the longest axis, in an order that does not depend on threads.
+/// All contacts longer than the tolerance, by a sweep along the longest axis, in an order that does not depend on
+/// threads.
 fn contacts(sides: &[SurfaceSide], tolerance: f64) -> Vec<Contact> {
     let axis = longest_axis(sides);
     let mut edges: Vec<Edge> =
@@ -109,9 +117,9 @@ fn contact(a: &Edge, b: &Edge, tolerance: f64) -> Option<Contact> {
     Some(Contact { sides: [a.side.min(b.side), a.side.max(b.side)], ends, opposed })
 }
 
-/// The piece of the line `a` that `b` lies on too, if it is longer than the tolerance.
+/// The segment of `a` that also lies on `b`, if it is longer than the tolerance.
 fn shared(a: [DVec3; 2], b: [DVec3; 2], tolerance: f64) -> Option<[DVec3; 2]> {
-    // The boxes first: nearly all pairs end here.
+    // Bounding boxes exclude nearly all pairs.
     let apart = |p: [DVec3; 2], q: [DVec3; 2]| (p[0].min(p[1]) - q[0].max(q[1])).max_element() > tolerance;
     if apart(a, b) || apart(b, a) {
         return None;
@@ -155,9 +163,9 @@ mod tests {
         assert!(found.len() == 3 && found.iter().all(same), "found {found:?}, expected {expected:?}");
     }
 
-    /// Light on both sides of a partition has nothing to do with each other; a kerb below the floor parts nothing.
+    /// The light on the two sides of a partition is unrelated; a kerb below the floor separates nothing.
     #[test]
-    fn what_stands_on_an_edge_parts_light_and_what_hangs_below_does_not() {
+    fn sides_above_an_edge_separate_light_and_sides_below_do_not() {
         let wall = |z: f64| side([[1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [1.0, 1.0, z], [1.0, 0.0, z]]);
         for (z, smooth) in [(0.5, false), (-0.5, true)] {
             let found = smooth_contacts(&[tile(0.0, 0.0), tile(1.0, 0.0), wall(z)]);

@@ -1,10 +1,10 @@
-//! Light for texels around a chart, so that lookups near its edge find nothing dark: each takes the mean of those of
-//! its neighbours that have light. Only texels of the chart's own rectangle give and take.
+//! Extends light to the texels around a chart, so that lookups near its edge return no dark texels: each gets the
+//! mean of its lit neighbours. Only texels of the chart's own rectangle take part.
 
 use super::grid::MARGIN;
 use equilux_formats::Rgb;
 
-/// Fills what is empty within [`MARGIN`] texels of what is not. `values`: one a texel, row after row of `width`.
+/// Fill empty texels within [`MARGIN`] texels of lit ones. `values`: one for each texel, row after row of `width`.
 pub fn dilate(values: &mut [Option<Rgb>], width: u32) {
     for _ in 0..MARGIN {
         let before = values.to_vec();

@@ -1,5 +1,5 @@
-//! The charts of parts, and how many texels they will take. In go a scene's parts; out come their charts, and a texel size
-//! that suits the scene.
+//! The charts of parts, and an estimate of the texels that they need. Input: a scene's parts. Output: their charts,
+//! and a suitable texel size.
 
 use super::authored::AuthoredLayout;
 use super::bounds::Bounds;
@@ -8,19 +8,19 @@ use super::grid::MARGIN;
 use equilux_formats::{Part, Scene};
 use std::sync::Arc;
 
-/// So many texels an atlas gets when nobody says otherwise.
+/// Default number of texels of an atlas.
 const DEFAULT_TEXELS: f64 = 1024.0 * 1024.0;
-/// The share of an image that rectangles fill.
+/// The share of an image that rectangles typically fill.
 const FILLED: f64 = 0.85;
 
-/// A part's charts, as its author or else we cut them.
+/// A part's charts, by its author or generated.
 #[derive(Debug)]
 pub struct PartCharts {
-    /// The author's.
+    /// The author's charts.
     pub authored: Option<AuthoredLayout>,
-    /// Ours, made when they are needed.
+    /// Generated charts, made when needed.
     pub own: Option<Arc<[Chart]>>,
-    /// Why the author's layout is not kept, at least in one place.
+    /// The reason why the author's layout is not used for at least one scale.
     pub refused: Option<&'static str>,
 }
 
@@ -37,15 +37,15 @@ impl PartCharts {
     }
 }
 
-/// What charts take of an atlas: with texels of t metres Σ (w/t + m)(h/t + m), where m is what a chart takes beyond its
-/// extent, a polynomial in 1/t.
+/// Texels that charts need: with texels of t metres Σ (w/t + m)(h/t + m), where m is the number of texels that a
+/// chart needs beyond its extent; a polynomial in 1/t.
 #[derive(Debug)]
 pub struct Estimate {
     coefficients: [f64; 3],
 }
 
 impl Estimate {
-    /// What the instances of `scene` take.
+    /// The estimate for the instances of `scene`.
     pub fn of(scene: &Scene, parts: &[PartCharts]) -> Self {
         let parts: Vec<[f64; 3]> = parts.iter().map(Self::of_part).collect();
         let mut coefficients = [0.0; 3];
@@ -76,18 +76,19 @@ impl Estimate {
         rectangles.into_iter().fold([0.0; 3], |sum, one| [0, 1, 2].map(|i: usize| sum[i] + one[i]))
     }
 
-    /// How many texels of this size, metres, images will have.
+    /// Number of texels of this size, metres, that images will have.
     pub fn texels(&self, size: f64) -> f64 {
         let [a, b, c] = self.coefficients;
         (a + b / size + c / (size * size)) / FILLED
     }
 
-    /// The size, two digits of it, that makes the usual number of texels, or twice what margins alone take.
+    /// The texel size, rounded to two digits, that results in the default number of texels, or in twice the number
+    /// for margins alone.
     pub fn suitable_size(&self) -> f64 {
         let [a, b, c] = self.coefficients;
         let spare = (FILLED * DEFAULT_TEXELS).max(2.0 * a) - a;
         let size = 2.0 * c / ((b * b + 4.0 * c * spare).sqrt() - b);
-        // Written out and read again, so that the size printed is the size used.
+        // Printed and parsed, so that the printed size is the size in use.
         if size.is_finite() { format!("{size:.1e}").parse().unwrap_or(size) } else { 1.0 }
     }
 }

@@ -1,8 +1,9 @@
-//! Values of a chart's texels that mostly change slowly. In go texels and a way to find the value of some of them; out come
-//! all, found where they change or where something stands near, interpolated elsewhere.
+//! Interpolates values of a chart's texels that mostly change slowly. Input: texels, and a function that computes the
+//! values of some of them. Output: values of all texels, computed where they change or where geometry is near, and
+//! interpolated elsewhere.
 //!
-//! Squares of texels are halved until what their corners say of their middle is what is found there. Compare Ward & Heckbert
-//! 1992, who space samples by what stands near.
+//! Squares of texels are subdivided until interpolation between their corners predicts the value in their middle.
+//! Compare Ward & Heckbert 1992, who space samples by the distance of nearby geometry.
 
 use super::texels::{Texel, Texels};
 use crate::gather::Gather;
@@ -10,11 +11,12 @@ use equilux_bake::geometry::aabb::Aabb;
 use equilux_formats::Rgb;
 use std::collections::HashMap;
 
-/// Squares begin with so many texels a side.
-const SQUARE: u32 = 16;
+/// Initial side of squares, texels.
+const INITIAL_SIDE: u32 = 16;
 
-/// What `sample` finds for all of the texels, if it is not asked for all of them. `smooth` tells whether a square's corners
-/// say enough of it: in go theirs, what they say of its middle, and what is found there.
+/// The values of all texels, computed by `sample` for some of them and interpolated for the others. `smooth` decides
+/// whether a square can be interpolated, from the values at its corners, the interpolated value in its middle, and
+/// the computed value there.
 pub fn interpolated(
     gather: &Gather,
     texels: &Texels,
@@ -27,7 +29,7 @@ pub fn interpolated(
     let mut found = vec![None; texels.texels.len()];
     let mut open = field.squares();
     while !open.is_empty() {
-        field.learn(&open);
+        field.compute(&open);
         let mut halves = Vec::new();
         for square in open {
             match field.settled(square) {
@@ -40,14 +42,14 @@ pub fn interpolated(
     found.into_iter().map(|h| h.expect("every texel lies in a square")).collect()
 }
 
-/// A square of texels whose light is to be found: its lowest texel, and how many a side.
+/// A square of texels to be determined: its lowest texel, and its side.
 #[derive(Clone, Copy)]
 struct Square {
     at: [u32; 2],
     size: u32,
 }
 
-/// A chart's values as far as they are known.
+/// The known values of a chart's texels.
 struct Field<'a, S, T> {
     gather: &'a Gather,
     texels: &'a Texels,
@@ -60,16 +62,20 @@ struct Field<'a, S, T> {
 impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, S, T> {
     /// Squares that cover all texels.
     fn squares(&self) -> Vec<Square> {
-        let mut corners: Vec<[u32; 2]> =
-            self.texels.texels.iter().map(|texel| texel.at.map(|x| x / SQUARE * SQUARE)).collect();
+        let mut corners: Vec<[u32; 2]> = self
+            .texels
+            .texels
+            .iter()
+            .map(|texel| texel.at.map(|x| x / INITIAL_SIDE * INITIAL_SIDE))
+            .collect();
         corners.sort_unstable();
         corners.dedup();
-        corners.into_iter().map(|at| Square { at, size: SQUARE }).collect()
+        corners.into_iter().map(|at| Square { at, size: INITIAL_SIDE }).collect()
     }
 
-    /// Gather what these squares ask for and is not known, neighbours together.
-    fn learn(&mut self, squares: &[Square]) {
-        let mut wanted: Vec<usize> = squares.iter().flat_map(|square| self.asks(*square)).collect();
+    /// Compute the unknown values that these squares need, with neighbours in sequence.
+    fn compute(&mut self, squares: &[Square]) {
+        let mut wanted: Vec<usize> = squares.iter().flat_map(|square| self.needed(*square)).collect();
         wanted.retain(|number| !self.known.contains_key(number));
         wanted.sort_by_key(|&number| interleaved(self.texels.texels[number].at));
         wanted.dedup();
@@ -78,8 +84,8 @@ impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, 
         self.known.extend(wanted.into_iter().zip(light));
     }
 
-    /// The texels to be gathered for a square: none if it is to be halved whatever they say, all of a small one.
-    fn asks(&self, square: Square) -> Vec<usize> {
+    /// The texels whose values a square needs: none if it will be subdivided in any case, all of a small one.
+    fn needed(&self, square: Square) -> Vec<usize> {
         if square.size <= 2 {
             return self.inside(square).collect();
         }
@@ -89,7 +95,7 @@ impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, 
         square.probes().iter().map(|at| self.number[at]).collect()
     }
 
-    /// The light of all texels of a square, if what is known is enough.
+    /// The values of all texels of a square, if they can be interpolated or are known.
     fn settled(&self, square: Square) -> Option<Vec<(usize, Rgb)>> {
         if square.size <= 2 {
             return Some(self.inside(square).map(|number| (number, self.known[&number])).collect());
@@ -98,11 +104,13 @@ impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, 
             return None;
         }
         let [corners @ .., middle] = square.probes().map(|at| self.known[&self.number[&at]]);
-        let told = |at: [u32; 2]| bilinear(corners, square.share_of(at));
+        let interpolated_value = |at: [u32; 2]| bilinear(corners, square.share_of(at));
         let centre = square.probes()[4];
-        let smooth = (self.smooth)(corners, told(centre), middle);
+        let smooth = (self.smooth)(corners, interpolated_value(centre), middle);
         smooth.then(|| {
-            self.inside(square).map(|number| (number, told(self.texels.texels[number].at))).collect()
+            self.inside(square)
+                .map(|number| (number, interpolated_value(self.texels.texels[number].at)))
+                .collect()
         })
     }
 
@@ -112,13 +120,13 @@ impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, 
         cells.filter_map(|at| self.number.get(&at).copied())
     }
 
-    /// Whether a square is full of texels in one plane, and nothing stands near it.
+    /// Whether all texels of a square exist and lie in one plane, and no geometry is near it.
     fn may_be_smooth(&self, square: Square) -> bool {
-        let patch_of = |number: usize| self.texels.texels[number].pieces[0].patch;
+        let patch_of = |number: usize| self.texels.texels[number].footprints[0].patch;
         let [first, last] = [0, square.size - 1].map(|k| self.number.get(&square.at.map(|x| x + k)));
         let (Some(&first), Some(_)) = (first, last) else { return false };
         let in_plane = |number: &usize| {
-            self.texels.texels[*number].pieces.iter().all(|piece| piece.patch == patch_of(first))
+            self.texels.texels[*number].footprints.iter().all(|footprint| footprint.patch == patch_of(first))
         };
         if self.inside(square).filter(in_plane).count() != (square.size * square.size) as usize {
             return false;
@@ -133,13 +141,13 @@ impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, 
 }
 
 impl Square {
-    /// Its corner texels, and one in its middle.
+    /// Its corner texels and its middle texel.
     fn probes(self) -> [[u32; 2]; 5] {
         let ([x, y], last) = (self.at, self.size - 1);
         [[x, y], [x + last, y], [x, y + last], [x + last, y + last], [x + self.size / 2, y + self.size / 2]]
     }
 
-    /// Where a texel lies between the corners, 0..1 along each side.
+    /// The position of a texel between the corners, 0..1 along each side.
     fn share_of(self, at: [u32; 2]) -> [f64; 2] {
         [0, 1].map(|axis| f64::from(at[axis] - self.at[axis]) / f64::from(self.size - 1))
     }
@@ -156,7 +164,7 @@ fn bilinear(corners: [Rgb; 4], [s, t]: [f64; 2]) -> Rgb {
     corners.iter().zip(weights).fold(Rgb::BLACK, |sum, (corner, weight)| sum + *corner * weight)
 }
 
-/// The bits of both coordinates in turn (Morton 1966): what is near in it is near.
+/// The bits of both coordinates, interleaved (Morton 1966): a curve that keeps neighbours close.
 fn interleaved([x, y]: [u32; 2]) -> u64 {
     let spread = |n: u32| (0..32).fold(0u64, |bits, k| bits | u64::from(n >> k & 1) << (2 * k));
     spread(x) | spread(y) << 1

@@ -1,34 +1,34 @@
-//! A chart's texels: where they lie on it. In go a chart and a texel size; out comes the affine map between texels and
-//! the chart's plane.
+//! The texel grid of a chart. Input: a chart and a texel size. Output: the affine map between texels and the chart's
+//! plane.
 //!
-//! Texel (i, j) is the square [i, i + 1] × [j, j + 1], rows downwards in the image. The chart's rectangle runs through the
-//! **centres** of its outermost texels, so that a lookup anywhere on a rectangular chart is made of the chart's own
-//! texels only, its edges show texels that lie on them, and two charts that meet at a whole edge have texels at the same
-//! points of it. Around it goes a margin for lookups that reach beyond: on slanted edges, and in smaller images of the
-//! lightmap.
+//! Texel (i, j) is the square [i, i + 1] × [j, j + 1], with rows downwards in the image. The chart's rectangle passes
+//! through the **centres** of its outermost texels. Lookups on a rectangular chart therefore use only the chart's own
+//! texels, its edges show texels that lie on them, and two charts that meet along a whole edge have texels at the
+//! same points of it. A margin around the rectangle serves lookups beyond it: on slanted edges, and in smaller images
+//! of the lightmap.
 
 use super::bounds::Bounds;
 use super::chart::Chart;
 use super::patch::{Map, Patch};
 use glam::{DVec2, DVec3, dvec2};
 
-/// Texels around a chart that are its own, and get their light from its nearest ones. Two charts are twice as far apart.
+/// Width of the margin around a chart, texels, filled from its nearest texels. Two charts are twice as far apart.
 pub const MARGIN: u32 = 3;
 
-/// Where a chart's texels lie, in the coordinates of its part.
+/// The positions of a chart's texels, in the coordinates of its part.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
-    /// Texels of the rectangle with its margin.
+    /// Size of the rectangle with its margin, texels.
     pub size: [u32; 2],
     /// A map for each of the chart's planes.
     maps: Vec<Map>,
 }
 
 impl Grid {
-    /// The grid of `chart` with texels of at most `texel` metres. Its rectangle is the smallest.
+    /// The grid of `chart` on its smallest rectangle, with texels of at most `texel` metres.
     pub fn new(chart: &Chart, texel: f64) -> Self {
         let Bounds { axes, low, extent } = Bounds::of(chart);
-        // A needle's hull may be a line.
+        // The hull of a very thin chart may be a line.
         let extent = extent.max(DVec2::splat(extent.max_element() * f64::EPSILON));
         let steps = extent.to_array().map(|length| steps(length, texel));
         let step = extent / dvec2(f64::from(steps[0]), f64::from(steps[1]));
@@ -42,24 +42,24 @@ impl Grid {
         Self { size, maps: (0..chart.plane_count()).map(map).collect() }
     }
 
-    /// A grid of these maps, one for each of a chart's planes.
+    /// A grid of these maps, one for each plane of a chart.
     pub fn of_maps(size: [u32; 2], maps: Vec<Map>) -> Self {
         Self { size, maps }
     }
 
-    /// Where a point of one of the chart's planes lies, texels.
+    /// The texel coordinates of a point in one of the chart's planes.
     pub fn texel_of(&self, plane: usize, point: DVec3) -> DVec2 {
         self.maps[plane].texel_of(point)
     }
 
-    /// The planes, by number.
+    /// The planes in order.
     pub fn patches(&self) -> impl Iterator<Item = &Patch> {
         self.maps.iter().map(|map| &map.patch)
     }
 }
 
-/// How many texels an extent takes; one that is longer by rounding only does not take another.
+/// Number of texels for an extent; excess lengths due to rounding do not add a texel.
 fn steps(length: f64, texel: f64) -> u32 {
-    // A grid that is too large for any image is refused later; until then it must only not wrap around.
+    // A grid that is too large for any image is rejected later; here it must only not overflow.
     ((length / texel) * (1.0 - 1e-6)).ceil().clamp(1.0, 1e9) as u32
 }

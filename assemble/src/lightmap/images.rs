@@ -1,4 +1,4 @@
-//! A lightmap as images: half-float EXR for engines, 8-bit PNG for people and for models.
+//! A lightmap as images: half-float EXR for engines, 8-bit PNG for viewing and for models.
 
 use super::atlas::Tile;
 use super::{Holds, Lightmap};
@@ -22,14 +22,14 @@ pub enum Units {
     /// Irradiance, W/m², as three.js expects it
     #[default]
     Irradiance,
-    // With an exposure of 683 a watt of light is one of green, 683 lm.
+    // An exposure of 683 turns a watt of green light into 683 lm.
     /// Irradiance over π, the radiance of a white surface, which Bevy multiplies by its lightmap_exposure (683 for watts) to
     /// get cd/m²
     Bevy,
 }
 
 impl Units {
-    /// The factor on irradiance.
+    /// The factor applied to irradiance.
     pub fn factor(self) -> f64 {
         match self {
             Self::Irradiance => 1.0,
@@ -37,7 +37,7 @@ impl Units {
         }
     }
 
-    /// In words.
+    /// Description for the list of the lightmap.
     pub fn name(self) -> &'static str {
         match self {
             Self::Irradiance => {
@@ -50,18 +50,18 @@ impl Units {
     }
 }
 
-/// The brightest light keeps its last digits, and a thousandth of it still has ten bits, between these.
+/// Range of the largest value in which half floats keep its last digits and ten bits of a thousandth of it.
 const HALF_RANGE: std::ops::RangeInclusive<f64> = 0.0625..=65504.0;
 
-/// The factor on a lightmap's numbers whose largest is `most` so that half floats hold them: 1 wherever that will do,
-/// else the power of two that brings it between 1024 and 2048.
+/// The factor for a lightmap's numbers, the largest of which is `most`, that makes them fit half floats: 1 where
+/// possible, otherwise the power of two that brings `most` between 1024 and 2048.
 pub fn half_scale(most: f64) -> f64 {
     let fits = most == 0.0 || HALF_RANGE.contains(&most);
     if fits { 1.0 } else { 2f64.powi(10 - most.log2().floor() as i32) }
 }
 
-/// One image of the lightmap: for each texel what `value` makes of its tile and place in it, else `empty`. Rectangles of
-/// an author's layout may overlap: what holds some of a chart goes before what is only near one.
+/// One image of the lightmap: for each texel `value` of its tile and its index in the tile, otherwise `empty`.
+/// Rectangles of an author's layout may overlap: texels with part of a chart take precedence over margins.
 fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(usize, usize) -> T) -> Vec<T> {
     let [width, height] = lightmap.atlas.images[image].map(|side| side as usize);
     let mut texels = vec![empty; width * height];
@@ -80,7 +80,8 @@ fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(us
     texels
 }
 
-/// The EXR file of an image: irradiance times `factor`, as half floats, compressed without loss.
+/// The EXR file of an image: irradiance times `factor`, as half floats, compressed without loss. Fails if it cannot
+/// be encoded.
 pub fn exr(lightmap: &Lightmap, number: usize, factor: f64) -> io::Result<Vec<u8>> {
     half_floats(lightmap, number, |tile, texel| (lightmap.irradiance[tile][texel] * factor).0)
 }

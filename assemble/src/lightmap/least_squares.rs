@@ -1,27 +1,27 @@
-//! The least change of values that makes differences between them vanish. In go values, rows c_k over them that should be
-//! zero, and pairs that lie beside each other; out comes the change.
+//! Finds the smallest change of values that makes given differences vanish. Input: values, rows c_k of weights whose
+//! sums over the values should be zero, and pairs of adjacent values. Output: the change.
 //!
-//! With v the values the change y minimises |y|² + μ Σ_(i, j) (y_i − y_j)² + λ Σ_k (c_k·(v + y))²: it is small and even, so
-//! that whatever detail v has stays. With D the rows of pairs, (I + μDᵀD + λCᵀC) y = −λCᵀC v, solved by conjugate gradients
-//! (Hestenes & Stiefel 1952), one after the other, so that the bits do not depend on threads.
+//! For values v, the change y minimises |y|² + μ Σ_(i, j) (y_i − y_j)² + λ Σ_k (c_k·(v + y))²: it is small and
+//! smooth, so that the detail of v is preserved. With D the rows of pairs, (I + μDᵀD + λCᵀC) y = −λCᵀC v is solved by
+//! conjugate gradients (Hestenes & Stiefel 1952), sequentially, so that the bits do not depend on threads.
 
-/// A row: numbers of values, with weights.
+/// A row: indices of values, with weights.
 pub type Difference = Vec<(usize, f64)>;
 
-/// λ: a jump shrinks to about a thousandth.
+/// λ: a difference shrinks to about a thousandth.
 const STIFFNESS: f64 = 1e3;
-/// μ: a change fades over about three values.
-const EVENNESS: f64 = 10.0;
-/// Conjugate gradients end when the residual has shrunk by this factor; half floats keep 5e-4.
-const ENOUGH: f64 = 1e-7;
-/// More steps than a system of this stiffness ever needs.
-const MOST_STEPS: usize = 1000;
+/// μ: a change decays over about three values.
+const SMOOTHNESS: f64 = 10.0;
+/// Residual reduction at which conjugate gradients end; half floats have an accuracy of 5e-4.
+const RESIDUAL_REDUCTION: f64 = 1e-7;
+/// Maximum number of steps, more than a system of this stiffness needs.
+const MAX_STEPS: usize = 1000;
 
 /// The change y of the values `v`.
 pub fn correction(rows: &[Difference], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f64> {
     let apply = |x: &[f64]| {
         let mut y = x.to_vec();
-        add_evenness(pairs, x, &mut y);
+        add_smoothness(pairs, x, &mut y);
         add_agreement(rows, x, &mut y);
         y
     };
@@ -31,8 +31,8 @@ pub fn correction(rows: &[Difference], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f
     residual.iter_mut().for_each(|r| *r = -*r);
     let mut direction = residual.clone();
     let mut square = dot(&residual, &residual);
-    let goal = square * ENOUGH * ENOUGH;
-    for _ in 0..MOST_STEPS {
+    let goal = square * RESIDUAL_REDUCTION * RESIDUAL_REDUCTION;
+    for _ in 0..MAX_STEPS {
         if square <= goal {
             break;
         }
@@ -48,9 +48,9 @@ pub fn correction(rows: &[Difference], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f
 }
 
 /// y += μDᵀD x.
-fn add_evenness(pairs: &[[usize; 2]], x: &[f64], y: &mut [f64]) {
+fn add_smoothness(pairs: &[[usize; 2]], x: &[f64], y: &mut [f64]) {
     for &[i, j] in pairs {
-        let force = EVENNESS * (x[i] - x[j]);
+        let force = SMOOTHNESS * (x[i] - x[j]);
         y[i] += force;
         y[j] -= force;
     }

@@ -1,31 +1,31 @@
-//! What lies where in a lightmap, for programs: `lightmaps.json`.
+//! The contents of a lightmap, for programs: `lightmaps.json`.
 
 use super::names::direction_name;
 use super::pack::Spot;
 use super::{Lightmap, Units};
 use serde_json::{Value, json};
 
-/// What directions are.
+/// Description of the directions.
 const DIRECTIONS: &str = "mean direction to the light, scene axes, weighted by the luminance of its irradiance: 1 long where light comes from one direction, 0 where it comes evenly from all";
 
 /// A file in memory.
-pub struct NamedBytes {
+pub struct File {
     /// Its name.
     pub name: String,
     /// Its contents.
     pub bytes: Vec<u8>,
 }
 
-impl NamedBytes {
+impl File {
     /// A file of this name and these contents.
     pub fn new(name: impl Into<String>, bytes: Vec<u8>) -> Self {
         Self { name: name.into(), bytes }
     }
 }
 
-/// The list. `images`: for each image of the lightmap its EXR and its PNG. The EXRs' numbers are those in `units` times
-/// `scale`.
-pub fn listing(lightmap: &Lightmap, images: &[[NamedBytes; 2]], units: Units, scale: f64) -> Value {
+/// The list of images and nodes. `images`: for each image of the lightmap its EXR and its PNG. The numbers in the EXR
+/// files are in `units`, times `scale`.
+pub fn listing(lightmap: &Lightmap, images: &[[File; 2]], units: Units, scale: f64) -> Value {
     let instances = lightmap.scene.instances.iter().enumerate();
     json!({
         "units": units.name(),
@@ -47,11 +47,11 @@ pub fn listing(lightmap: &Lightmap, images: &[[NamedBytes; 2]], units: Units, sc
     })
 }
 
-fn hash(file: &NamedBytes) -> String {
+fn hash(file: &File) -> String {
     blake3::hash(&file.bytes).to_hex().to_string()
 }
 
-/// Where texture coordinates of a sheet lie in an image: times `scale`, plus `offset`.
+/// The rectangle of a sheet in an image: texture coordinates times `scale`, plus `offset`.
 pub struct Rectangle {
     /// The image.
     pub image: usize,

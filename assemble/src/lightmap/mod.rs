@@ -1,10 +1,10 @@
-//! Lightmaps: the light of a scene as images that game engines put on its surfaces.
+//! Lightmaps: the light of a scene as images that game engines apply to its surfaces.
 //!
-//! In go a scene's parts and instances, and a function that gives texels their irradiance; out come images, a model that
-//! carries them, and a list of what lies where in them.
+//! Input: a scene's parts and instances, and a function that computes the irradiance of texels. Output: images,
+//! models that carry them, and a list of the positions of all charts in the images.
 //!
-//! Once for each part and scale: part → sides → charts → grids → atlas. Then: atlas × instances → texels → irradiance →
-//! light around charts → seams → images, models, list.
+//! Once for each part and scale: part → sides → charts → grids → atlas. Then: atlas × instances → texels → irradiance
+//! → margins → seams → images, models, list.
 
 pub mod atlas;
 mod authored;
@@ -46,11 +46,11 @@ use tints::TintTarget;
 /// Options of lightmaps.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LightmapOptions {
-    /// The size of texels, metres; none to let the scene decide.
+    /// The size of texels, metres; none for a size that suits the scene.
     pub texel_size: Option<f64>,
-    /// What the numbers in the images mean.
+    /// The units of the numbers in the images.
     pub units: Units,
-    /// Whether to write where light comes from, too.
+    /// Whether to write the mean directions of light, too.
     pub directions: bool,
 }
 
@@ -59,39 +59,39 @@ pub struct LightmapOptions {
 pub struct Lightmap<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// What lies where.
+    /// The layout.
     pub atlas: &'a Atlas,
     /// The charts of all instances.
     pub tiles: Vec<Tile>,
-    /// Irradiance, W/m², linear RGB, for each tile one a texel of its rectangle, row after row.
+    /// Irradiance, W/m², linear RGB: for each tile one value for each texel of its rectangle, row after row.
     pub irradiance: Vec<Vec<Rgb>>,
-    /// Where the light of each of these comes from, if that is asked for: see [`Lightmap::with_directions`].
+    /// The mean direction of the light of each of these texels, if requested: see [`Lightmap::with_directions`].
     pub directions: Option<Vec<Vec<[f64; 3]>>>,
-    /// For each of these what of the chart it holds.
+    /// What each of these texels holds.
     holds: Vec<Vec<Holds>>,
-    /// What each instance's materials do with light.
+    /// The materials of each instance.
     materials: Vec<Vec<Material>>,
-    /// What textures multiply reflectance and emission of each texel by, if there are any.
+    /// The factors of textures on reflectance and emission of each texel, if there are any.
     tints: Option<[Vec<Vec<Rgb>>; 2]>,
 }
 
-/// What of its chart a texel holds.
+/// What a texel holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Holds {
-    /// Nothing, and it is not near.
+    /// Nothing; the chart is not near.
     Nothing,
-    /// Light for lookups beside the chart.
+    /// Light for lookups next to the chart.
     Margin,
-    /// Some of the chart.
+    /// Part of the chart.
     Chart,
 }
 
-/// A texel takes about as much time as this many rows of form factors.
+/// Cost of a texel, in rows of form factors.
 pub const ROWS_PER_TEXEL: f64 = 0.1;
 
 impl<'a> Lightmap<'a> {
-    /// The lightmap of `scene`. `irradiance` gives texels theirs, W/m² of linear RGB, not divided by π, in their order.
-    /// Fails if the monitor is stopped meanwhile; a stop before was meant for something else.
+    /// The lightmap of `scene`. `irradiance` computes the irradiance of texels in their order, W/m², linear RGB, not
+    /// divided by π. Fails if the monitor is stopped meanwhile; earlier stops only ended the exchange.
     pub fn new(
         scene: &'a Scene,
         atlas: &'a Atlas,
@@ -117,8 +117,9 @@ impl<'a> Lightmap<'a> {
         Ok(Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds })
     }
 
-    /// The same with the mean direction that each texel's light comes from, which `directions` gives: scene coordinates, weighted
-    /// by what comes from there, so that it is as long as light is directed, 0 to 1. Fails as [`Lightmap::new`] does.
+    /// Add the mean direction of each texel's light, computed by `directions`: in scene coordinates, weighted by the
+    /// luminance from each direction, with a length from 0 (uniform) to 1 (from a single direction). Fails as
+    /// [`Lightmap::new`] does.
     pub fn with_directions(
         mut self,
         directions: impl Fn(&Texels) -> Vec<[f64; 3]> + Sync,
@@ -144,7 +145,7 @@ impl<'a> Lightmap<'a> {
         (id, &self.materials[tile.instance][id.index()])
     }
 
-    /// What the materials of an instance do with light.
+    /// The materials of an instance.
     pub fn materials_of(&self, instance: usize) -> &[Material] {
         &self.materials[instance]
     }
@@ -159,8 +160,8 @@ impl<'a> Lightmap<'a> {
     }
 }
 
-/// The irradiance of texels that hold some of a chart, for each tile, a step of progress of this name and cost. Fails if
-/// the monitor was stopped meanwhile.
+/// The values of texels that hold part of a chart, for each tile. `what` and `rows_per_texel`: name and cost of the
+/// progress step. Fails if the monitor was stopped meanwhile.
 fn values(
     scene: &Scene,
     atlas: &Atlas,
@@ -202,7 +203,7 @@ fn values(
     Ok(values)
 }
 
-/// Light for texels around charts too, zero for all others, and which is which.
+/// Values extended to margins, zero for all other texels, and what each texel holds.
 fn with_margins(mut values: Vec<Vec<Option<Rgb>>>, tiles: &[Tile]) -> (Vec<Vec<Rgb>>, Vec<Vec<Holds>>) {
     let whose = |had: &[Option<Rgb>], have: &[Option<Rgb>]| {
         let both = had.iter().zip(have);

@@ -1,9 +1,9 @@
-//! The scene as a model that carries its lightmap. In go a lightmap and its images; out comes a binary glTF 2.0 file: a
-//! node an instance, whose mesh shares its vertices with the other instances of its part and scale.
+//! The scene as a model that carries its lightmap. Input: a lightmap and its images. Output: a binary glTF 2.0 file
+//! with a node for each instance, whose mesh shares its vertices with the other instances of its part and scale.
 //!
-//! A node has materials of its own, since light is its own: the image is their texture, and KHR_texture_transform takes
-//! the texture coordinates that instances share to the node's place in it. glTF wants TEXCOORD_0 before TEXCOORD_1, so
-//! both are the same.
+//! Each node has its own materials, since its light is its own: the image is their texture, and KHR_texture_transform
+//! maps the shared texture coordinates to the node's rectangle. glTF requires TEXCOORD_0 before TEXCOORD_1, so both
+//! are equal.
 
 use super::Lightmap;
 use super::images::Peaks;
@@ -16,20 +16,20 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 use std::io;
 
-/// A vertex: POSITION and TEXCOORD_1, three and two f32.
+/// Bytes of a vertex: POSITION and TEXCOORD_1, three and two f32.
 const VERTEX_BYTES: usize = 20;
 const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 
-/// What the model's textures hold.
+/// The contents of the model's textures.
 pub enum Look<'a> {
-    /// The share of the peak: as emission, in units of radiance. Base colours are kept.
+    /// Radiosity as a share of its peak, used as emission in units of radiance. Base colours are kept.
     Emissive(&'a Peaks),
-    /// What pictures show: as colours of unlit surfaces.
+    /// The colours of the pictures, used for unlit surfaces.
     Unlit,
 }
 
-/// The file's bytes. `images`: PNG files.
+/// The bytes of the model file. `images`: PNG files.
 pub fn model(lightmap: &Lightmap, images: &[Vec<u8>], look: &Look) -> io::Result<Vec<u8>> {
     let mut document = Document::default();
     let meshes: Vec<Vec<Primitive>> =
@@ -110,7 +110,7 @@ impl Document {
         [first, first + 1]
     }
 
-    /// The mesh of an instance, with materials of its own.
+    /// Add the mesh of an instance, with materials of its own, and return its index.
     fn add_mesh(
         &mut self,
         lightmap: &Lightmap,
@@ -131,7 +131,7 @@ impl Document {
         self.meshes.len() - 1
     }
 
-    /// Vertices and images as one buffer, with the views on it.
+    /// Append the images to the vertices in one buffer, add their buffer views, and return the buffer.
     fn add_images(&mut self, images: &[Vec<u8>]) -> Vec<u8> {
         let mut buffer = std::mem::take(&mut self.vertices);
         self.views.push(json!({
@@ -160,7 +160,7 @@ impl Document {
             "materials": self.materials,
             "textures": (0..images).map(|image| json!({ "source": image, "sampler": 0 })).collect::<Vec<_>>(),
             "images": (0..images).map(|image| json!({ "bufferView": image + 1, "mimeType": "image/png" })).collect::<Vec<_>>(),
-            // Linear, without smaller images: those would mix charts.
+            // Linear filtering without mipmaps, which would mix charts.
             "samplers": [{ "magFilter": 9729, "minFilter": 9729, "wrapS": 33071, "wrapT": 33071 }],
             "accessors": self.accessors,
             "bufferViews": self.views,

@@ -1,11 +1,11 @@
 //! NamedBytes names of lightmaps.
 
-/// The first image has no number: mostly it is the only one.
+/// The file name of image `number`; the first has no number, since it is usually the only one.
 pub fn name(number: usize, ending: &str) -> String {
     if number == 0 { format!("lightmap.{ending}") } else { format!("lightmap-{}.{ending}", number + 1) }
 }
 
-/// The same of directions.
+/// The file name of the directions of image `number`.
 pub fn direction_name(number: usize) -> String {
     if number == 0 {
         "lightmap_direction.exr".into()

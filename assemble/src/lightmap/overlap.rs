@@ -1,10 +1,10 @@
-//! Whether convex polygons overlap when seen from one direction: by separating axes. Touching is not overlapping.
+//! Tests whether convex polygons overlap in projection, by separating axes. Touching does not count as overlapping.
 
 use equilux_bake::geometry::tolerance::FLATNESS;
 use equilux_formats::Corners;
 use glam::{DVec2, DVec3};
 
-/// Whether any two of `polygons` overlap, seen along `direction` (unit), by more than rounding.
+/// Whether any two of `polygons` overlap by more than rounding when projected along `direction` (unit).
 pub fn any_overlap(polygons: impl Iterator<Item = Corners>, direction: DVec3) -> bool {
     let (u, v) = direction.any_orthonormal_pair();
     let seen = |corners: Corners| -> ProjectedPolygon {
@@ -20,6 +20,7 @@ pub fn any_overlap(polygons: impl Iterator<Item = Corners>, direction: DVec3) ->
     })
 }
 
+/// A polygon in projection, and its bounding box.
 struct ProjectedPolygon {
     corners: Vec<DVec2>,
     low: DVec2,

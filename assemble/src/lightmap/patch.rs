@@ -1,9 +1,8 @@
-//! Affine maps between texels and planes. In go a plane and how texels lie on it; out come points for texels and texels for
-//! points.
+//! Affine maps between texel coordinates and points of a plane.
 
 use glam::{DAffine3, DVec2, DVec3, dvec2};
 
-/// A piece of plane that texels lie in: texel coordinates (x, y) are the point `origin` + x·`du` + y·`dv`.
+/// A region of a plane with texel coordinates: (x, y) is the point `origin` + x·`du` + y·`dv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     /// The corner of the grid, metres.
@@ -22,7 +21,7 @@ impl Patch {
         self.origin + self.du * texel.x + self.dv * texel.y
     }
 
-    /// The patch after `placement`, a similarity.
+    /// The patch transformed by `placement`, a similarity.
     pub fn placed(&self, placement: DAffine3) -> Self {
         let vector = |v| placement.transform_vector3(v);
         Self {
@@ -33,14 +32,14 @@ impl Patch {
         }
     }
 
-    /// The longest piece of the plane that one texel covers, metres: the larger singular value of (du dv).
+    /// The longest distance in the plane that one texel covers, metres: the larger singular value of (du dv).
     pub fn stretch(&self) -> f64 {
         let (a, b, c) = (self.du.length_squared(), self.du.dot(self.dv), self.dv.length_squared());
         ((a + c) / 2.0 + ((a - c) / 2.0).hypot(b)).sqrt()
     }
 }
 
-/// A patch, and the way back: the texel of a point is (p·`to[0]`, p·`to[1]`) + `at`.
+/// A patch and its inverse: the texel of a point p is (p·`to[0]`, p·`to[1]`) + `at`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Map {
     to: [DVec3; 2],
@@ -50,8 +49,9 @@ pub struct Map {
 }
 
 impl Map {
-    /// The map that projects along `direction` (unit) onto the unit vectors `axes` across it, whose texels are `step` metres
-    /// apart; what lies at `low` along the axes gets the texel `first`. The plane goes through `point`.
+    /// The map that projects along `direction` (unit) onto the unit vectors `axes` across it. Texels are `step`
+    /// metres apart; the point at `low` along the axes gets the texel coordinates `first`. The plane contains
+    /// `point`.
     pub fn along(
         direction: DVec3,
         axes: [DVec3; 2],
@@ -71,7 +71,7 @@ impl Map {
         Self { to: [axes[0] / step.x, axes[1] / step.y], at: first - low / step, patch }
     }
 
-    /// The map that takes three corners to their places, unless either lie on a line.
+    /// The map from three corners to their positions, unless either lie on a line.
     pub fn through(corners: [DVec3; 3], places: [DVec2; 3], normal: DVec3) -> Option<Self> {
         let [e, f] = [1, 2].map(|i| corners[i] - corners[0]);
         let [s, t] = [1, 2].map(|i| places[i] - places[0]);
@@ -87,12 +87,12 @@ impl Map {
         (finite && determinant > 0.0).then_some(map)
     }
 
-    /// Where a point lies, texels.
+    /// The texel coordinates of a point.
     pub fn texel_of(&self, point: DVec3) -> DVec2 {
         dvec2(point.dot(self.to[0]), point.dot(self.to[1])) + self.at
     }
 
-    /// The map whose texels are `count` times as many, and start at `first`.
+    /// The map with `count` times as many texels in each direction, starting at `first`.
     pub fn scaled(&self, count: f64, first: DVec2) -> Self {
         let Patch { origin, du, dv, normal } = self.patch;
         let (du, dv) = (du / count, dv / count);

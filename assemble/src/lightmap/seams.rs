@@ -1,9 +1,9 @@
-//! Seams: where two charts meet in one smooth surface, lookups on both sides of the edge must agree. In go the charts of all
-//! instances with their light; it comes out corrected.
+//! Seams: where two charts meet in one smooth surface, lookups on both sides of the edge must agree. Input: the
+//! charts of all instances with their light. Output: corrected light.
 //!
-//! Along every such edge, points are taken at the distance of the coarser chart's texels, so that they ask no more than
-//! its texels can give. Least squares over seams are due to Iwanicki (SIGGRAPH 2013, "Lighting Technology of The Last of
-//! Us").
+//! Along each such edge, points are spaced by the texels of the coarser chart, since closer points would demand more
+//! than its texels can represent. Least squares over seams are due to Iwanicki (SIGGRAPH 2013, "Lighting Technology
+//! of The Last of Us").
 
 use super::atlas::{Atlas, Tile};
 use super::contacts::{Contact, smooth_contacts};
@@ -14,11 +14,12 @@ use equilux_formats::{Instance, Rgb};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeSet;
 
-/// Make charts of `tiles` agree along their seams. `values`: for each tile one a texel of its rectangle, row after row.
+/// Make the charts of `tiles` agree along their seams. `values`: for each tile one value for each texel of its
+/// rectangle, row after row.
 pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values: &mut [Vec<Rgb>]) {
     let starts = starts(tiles);
     let mut differences = differences(atlas, instances, tiles, &starts);
-    // Only texels at seams take part, numbered without gaps.
+    // Only texels at seams take part, renumbered without gaps.
     let texels: BTreeSet<usize> = differences.iter().flatten().map(|&(texel, _)| texel).collect();
     let texels: Vec<usize> = texels.into_iter().collect();
     let number = |texel: usize| texels.binary_search(&texel).ok();
@@ -40,18 +41,18 @@ pub fn close_seams(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], values
     });
     for (i, &(tile, texel)) in places.iter().enumerate() {
         let value = &mut values[tile][texel];
-        // A fit may swing below zero next to a shadow; light does not.
+        // The fit may become negative next to a shadow; light cannot.
         *value = Rgb::from_fn(|channel| (value[channel] + corrections[channel][i]).max(0.0));
     }
 }
 
-/// The number of each tile's first texel, counted through all tiles.
+/// The number of each tile's first texel, counting all tiles.
 fn starts(tiles: &[Tile]) -> Vec<usize> {
     let next = |next: &mut usize, tile: &Tile| Some(std::mem::replace(next, *next + tile.texels()));
     tiles.iter().scan(0, next).collect()
 }
 
-/// How many texels further those to the right and below are, where the tile has them.
+/// Index offsets to the texels on the right and below, where they exist in the tile.
 fn beside(tile: &Tile, texel: usize) -> impl Iterator<Item = usize> + use<> {
     let width = tile.size[0] as usize;
     let right = (!(texel + 1).is_multiple_of(width)).then_some(1);
@@ -59,7 +60,7 @@ fn beside(tile: &Tile, texel: usize) -> impl Iterator<Item = usize> + use<> {
     right.into_iter().chain(below)
 }
 
-/// The lookups that must agree, in the scene.
+/// The differences of lookups that must vanish, for all seams of the scene.
 fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[usize]) -> Vec<Difference> {
     let (mut sides, mut whose) = (Vec::new(), Vec::new());
     for (number, tile) in tiles.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! The sides of a part's surfaces that light can fall on. In goes a part; out come its surfaces, and once more, seen
-//! from behind, those that are double-sided.
+//! The sides of a part's surfaces that can receive light. Input: a part. Output: the fronts of its surfaces, and the
+//! backs of double-sided ones.
 
 use equilux_formats::{Corners, MaterialId, Part, Surface};
 use glam::{DVec2, DVec3};
 
-/// A surface seen from the side that is lit.
+/// One side of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SurfaceSide {
     /// Corners, counter-clockwise seen from this side, metres.
@@ -15,12 +15,12 @@ pub struct SurfaceSide {
     pub area: f64,
     /// Its material.
     pub material: MaterialId,
-    /// Where its corners lie in the author's lightmap, if there is one; a triangle's last comes twice.
+    /// Positions of its corners in the author's lightmap, if there is one; the last one of a triangle is repeated.
     pub lightmap: Option<[DVec2; 4]>,
 }
 
 impl SurfaceSide {
-    /// The side of a surface that its corners run around counter-clockwise. The area must be above zero.
+    /// The front of a surface, whose corners run counter-clockwise around it. The area must be above zero.
     pub fn of(surface: &Surface) -> Self {
         let Surface { corners, material, lightmap, .. } = *surface;
         let double_area = corners.double_area_vector();
@@ -33,13 +33,13 @@ impl SurfaceSide {
         }
     }
 
-    /// It as a surface.
+    /// This side as a surface.
     pub fn surface(&self) -> Surface {
         Surface { lightmap: self.lightmap, ..Surface::new(self.corners, self.material) }
     }
 }
 
-/// All sides of `part`, fronts in the order of its surfaces, then backs.
+/// All sides of `part`: fronts in the order of its surfaces, then backs.
 pub fn sides(part: &Part) -> Vec<SurfaceSide> {
     let double = part.surfaces.iter().filter(|surface| part.is_two_sided(surface));
     part.surfaces

@@ -1,5 +1,5 @@
-//! What of a scene's surfaces lies in each texel. In go a chart and its grid, in the coordinates of their part, and an
-//! instance's placement; out come texels with their footprints in scene coordinates.
+//! The texels of a chart. Input: a chart and its grid, in the coordinates of their part, and an instance's placement.
+//! Output: texels with their footprints in scene coordinates.
 
 use super::chart::Chart;
 use super::grid::Grid;
@@ -10,32 +10,32 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A chart of an instance, in scene coordinates, metres.
+/// The texels of a chart of an instance, in scene coordinates, metres.
 #[derive(Debug, Clone)]
 pub struct Texels {
-    /// The instance, by number.
+    /// Index of the instance.
     pub instance: usize,
-    /// The material of all, by its number in the part.
+    /// Material of the chart, as numbered in the part.
     pub material: MaterialId,
-    /// The planes that the chart lies in. Texel coordinates count from the corner of the chart's rectangle.
+    /// The planes of the chart. Texel coordinates count from the corner of the chart's rectangle.
     pub patches: Vec<Patch>,
-    /// The texels that hold some of the chart, row after row.
+    /// The texels that hold part of the chart, row after row.
     pub texels: Vec<Texel>,
 }
 
-/// A texel that holds some of a chart.
+/// A texel that holds part of a chart.
 #[derive(Debug, Clone)]
 pub struct Texel {
     /// Its column and row in the chart's rectangle.
     pub at: [u32; 2],
-    /// Its footprint: the parts of the chart's sides inside its square.
-    pub pieces: Vec<Footprint>,
+    /// The parts of the chart's sides inside its square.
+    pub footprints: Vec<Footprint>,
 }
 
-/// A planar convex piece of a side.
+/// The planar convex part of a side inside a texel's square.
 #[derive(Debug, Clone)]
 pub struct Footprint {
-    /// The patch it lies in, by number.
+    /// Index of the patch in which it lies.
     pub patch: usize,
     /// Corners, counter-clockwise seen from the lit side, metres.
     pub corners: Polygon,
@@ -46,14 +46,15 @@ pub struct Footprint {
 }
 
 impl Texel {
-    /// The area of its footprint, m².
+    /// The area of its footprints, m².
     pub fn area(&self) -> f64 {
-        self.pieces.iter().map(|piece| piece.area).sum()
+        self.footprints.iter().map(|footprint| footprint.area).sum()
     }
 }
 
 impl Texels {
-    /// The texels of `chart` in these `rows` of its rectangle; `instance` places it by `placement`, a similarity.
+    /// The texels of `chart` in these `rows` of its rectangle, placed by `placement`, a similarity, as part of
+    /// `instance`.
     pub fn new(chart: &Chart, grid: &Grid, rows: Range<u32>, instance: usize, placement: DAffine3) -> Self {
         let patches: Vec<Patch> = grid.patches().copied().collect();
         let mut texels: BTreeMap<[u32; 2], Vec<Footprint>> = BTreeMap::new();
@@ -64,25 +65,28 @@ impl Texels {
             let texel = |&p: &DVec3| grid.texel_of(patch, p).extend(0.0);
             let seen: Polygon = side.corners.as_slice().iter().map(texel).collect();
             let normal = placement.transform_vector3(side.normal).normalize();
-            // The side's own share, whatever its plane is taken to be: so areas add up to that of the sides.
+            // Scaled by the side's own area, however its plane is approximated, so that areas add up to those of the
+            // sides.
             let ratio = side.area / area(&seen) * grows;
             if !ratio.is_finite() {
-                // A needle that the grid does not tell from a line.
+                // A thin triangle that the grid cannot distinguish from a line.
                 continue;
             }
             let Some(seen) = between(&seen, &rows) else { continue };
-            into_squares(seen, |[column, row], piece| {
-                let area = area(&piece) * ratio;
+            into_squares(seen, |[column, row], footprint| {
+                let area = area(&footprint) * ratio;
                 let point = |p: &DVec3| placement.transform_point3(on_plane.point(p.truncate()));
-                let mut corners: Polygon = piece.iter().map(point).collect();
-                // Whichever way round the layout has the side, its corners keep their order; only a mirror turns it.
+                let mut corners: Polygon = footprint.iter().map(point).collect();
+                // The layout may mirror a side, but its corners keep their order; only a mirrored placement reverses
+                // it.
                 if determinant < 0.0 {
                     corners.reverse();
                 }
                 texels.entry([row, column]).or_default().push(Footprint { patch, corners, normal, area });
             });
         }
-        let texel = |([row, column], pieces): ([u32; 2], Vec<Footprint>)| Texel { at: [column, row], pieces };
+        let texel =
+            |([row, column], footprints): ([u32; 2], Vec<Footprint>)| Texel { at: [column, row], footprints };
         Self {
             instance,
             material: chart.material,
@@ -98,17 +102,17 @@ fn area(polygon: &[DVec3]) -> f64 {
     polygon.windows(2).skip(1).map(|edge| (edge[0] - from).cross(edge[1] - from).z).sum()
 }
 
-/// A place is on a line between texels if it is no further from it than this, in texels: what rounding puts beyond a line is no
-/// piece of its own.
+/// Distance within which a point lies on a line between texels, in texels: rounding beyond a line creates no
+/// footprint.
 const ON_LINE: f64 = 1e-9;
 
-/// How far beyond a line between texels a coordinate is.
+/// The distance of a coordinate beyond a line between texels.
 fn beyond(coordinate: f64, line: f64) -> f64 {
     let beyond = coordinate - line;
     if beyond.abs() <= ON_LINE { 0.0 } else { beyond }
 }
 
-/// What of a polygon lies in these rows; what lies on the line before them does.
+/// The part of a polygon in these rows, including the line before them.
 fn between(polygon: &[DVec3], rows: &Range<u32>) -> Option<Polygon> {
     let [start, end] = [rows.start, rows.end].map(f64::from);
     let [from_start, _] = part(polygon, |p| beyond(p.y, start));
@@ -116,12 +120,12 @@ fn between(polygon: &[DVec3], rows: &Range<u32>) -> Option<Polygon> {
     inside
 }
 
-/// Cut a polygon along whole coordinates, and `emit` each piece with the square it lies in.
+/// Divide a polygon along integer coordinates, and `emit` each part with its square.
 fn into_squares(polygon: Polygon, mut emit: impl FnMut([u32; 2], Polygon)) {
-    slices(polygon, 1, |row, slice| slices(slice, 0, |column, piece| emit([column, row], piece)));
+    slices(polygon, 1, |row, slice| slices(slice, 0, |column, footprint| emit([column, row], footprint)));
 }
 
-/// Cut a polygon along whole coordinates of one axis.
+/// Divide a polygon along integer coordinates of one axis.
 fn slices(polygon: Polygon, axis: usize, mut emit: impl FnMut(u32, Polygon)) {
     let reach = |pick: fn(f64, f64) -> f64, start: f64| polygon.iter().map(|p| p[axis]).fold(start, pick);
     let (low, high) = (reach(f64::min, f64::INFINITY), reach(f64::max, f64::NEG_INFINITY));
@@ -142,7 +146,7 @@ fn slices(polygon: Polygon, axis: usize, mut emit: impl FnMut(u32, Polygon)) {
     }
 }
 
-/// The four texels around a place in a chart's rectangle, and the weights that a bilinear lookup gives them.
+/// The four texels around a position in a chart's rectangle, and their weights in a bilinear lookup.
 pub fn bilinear(place: DVec2, width: u32) -> [(usize, f64); 4] {
     let corner = (place - 0.5).floor();
     let part = place - 0.5 - corner;

@@ -1,10 +1,11 @@
-//! A lightmap's files: `lightmap.exr`, `lightmap.png`, `lightmapped.glb`, `lightmapped.unlit.glb` and `lightmaps.json`.
+//! Writes the files of a lightmap: `lightmap.exr`, `lightmap.png`, `lightmapped.glb`, `lightmapped.unlit.glb` and
+//! `lightmaps.json`.
 //!
-//! The unlit model is a file of its own and not a variant in the other: KHR_materials_variants shows its second look only
-//! in viewers that know it, and most engines do not.
+//! The unlit model is a separate file, not a variant in the other: KHR_materials_variants shows its second look only
+//! in viewers that support it, and most engines do not.
 
 use super::images::{directions_exr, exr, half_scale, peaks, png, relative_png, shown_png};
-use super::listing::{NamedBytes, listing};
+use super::listing::{File, listing};
 use super::model::{Look, model};
 use super::names::{direction_name, name};
 use super::{Lightmap, Units};
@@ -14,35 +15,36 @@ use equilux_formats::{Error, Result};
 use std::io;
 use std::path::Path;
 
-/// Write all files of `lightmap` to `folder`, and take away images that an earlier, larger one left there.
+/// Write all files of `lightmap` to `folder`, and remove images of an earlier, larger one. Fails if a file cannot be
+/// encoded or written.
 pub fn write(folder: &Path, lightmap: &Lightmap, units: Units, exposure: Exposure) -> Result<WrittenFiles> {
     let most =
         lightmap.irradiance.iter().flatten().flatten().fold(0.0f64, |most, &h| most.max(h)) * units.factor();
     let scale = half_scale(most);
     let made = files(lightmap, units, scale, exposure).map_err(|error| unmade(folder, &error))?;
     let mut paths = Vec::new();
-    for NamedBytes { name, bytes } in &made {
+    for File { name, bytes } in &made {
         let path = folder.join(name);
         output_file::write(&path, |out| out.write_all(bytes))?;
         paths.push(path);
     }
     remove_images_from(folder, lightmap.atlas.images.len(), lightmap.directions.is_some());
     let scaled = format!(
-        "half floats cannot hold a lightmap that is {most:.3e} at its brightest: its numbers are multiplied by {scale}"
+        "half floats cannot hold this lightmap, whose maximum is {most:.3e}: its numbers are multiplied by {scale}"
     );
     let notes = lightmap.atlas.notes.iter().cloned().chain((scale != 1.0).then_some(scaled));
     Ok(WrittenFiles { paths, notes: notes.collect() })
 }
 
 /// All files, images first.
-fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> io::Result<Vec<NamedBytes>> {
+fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> io::Result<Vec<File>> {
     let numbers = || 0..lightmap.atlas.images.len();
     let pair = |number| {
         let light = exr(lightmap, number, units.factor() * scale)?;
         let preview = png(lightmap, number, exposure)?;
-        Ok([NamedBytes::new(name(number, "exr"), light), NamedBytes::new(name(number, "png"), preview)])
+        Ok([File::new(name(number, "exr"), light), File::new(name(number, "png"), preview)])
     };
-    let images: Vec<[NamedBytes; 2]> = numbers().map(pair).collect::<io::Result<_>>()?;
+    let images: Vec<[File; 2]> = numbers().map(pair).collect::<io::Result<_>>()?;
     let list = format!("{:#}\n", listing(lightmap, &images, units, scale)).into_bytes();
     let peaks = peaks(lightmap);
     let relative: Vec<Vec<u8>> =
@@ -50,14 +52,14 @@ fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> i
     let shown: Vec<Vec<u8>> =
         numbers().map(|n| shown_png(lightmap, n, exposure)).collect::<io::Result<_>>()?;
     let others = [
-        NamedBytes::new("lightmapped.glb", model(lightmap, &relative, &Look::Emissive(&peaks))?),
-        NamedBytes::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
-        NamedBytes::new("lightmaps.json", list),
+        File::new("lightmapped.glb", model(lightmap, &relative, &Look::Emissive(&peaks))?),
+        File::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
+        File::new("lightmaps.json", list),
     ];
     let directions = |number: usize, of: &Vec<Vec<[f64; 3]>>| {
-        Ok(NamedBytes::new(direction_name(number), directions_exr(lightmap, number, of)?))
+        Ok(File::new(direction_name(number), directions_exr(lightmap, number, of)?))
     };
-    let directions: Vec<NamedBytes> = lightmap
+    let directions: Vec<File> = lightmap
         .directions
         .iter()
         .flat_map(|of| numbers().map(move |number| directions(number, of)))
@@ -65,7 +67,7 @@ fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> i
     Ok(images.into_iter().flatten().chain(directions).chain(others).collect())
 }
 
-/// Take away images numbered `first` and above that an earlier, larger lightmap left, and directions that nobody asked for.
+/// Remove images numbered `first` and above of an earlier, larger lightmap, and directions that were not requested.
 fn remove_images_from(folder: &Path, first: usize, directions: bool) {
     let remove = |name: String| std::fs::remove_file(folder.join(name)).is_ok();
     for number in first.. {

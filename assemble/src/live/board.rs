@@ -1,5 +1,6 @@
-//! What a run has published and viewers may see. In go the run's results as they come, through [`Observer`]; out come snapshots
-//! and news. The run waits for nobody: it copies its light at most every [`PACE`], and viewers do the rest on their thread.
+//! The published state of a run. Input: the results of the run as they are computed, through [`Observer`]. Output:
+//! snapshots and news for viewers. The run never waits for viewers: it copies its light at most once every [`PACE`],
+//! and the server's thread does the rest.
 
 use super::field::{Field, RoundLight, Snapshot, Values, computed, row_sums};
 use super::history::{History, Point};
@@ -21,28 +22,28 @@ use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// The least time from one published light to the next.
+/// Minimum time between published lights.
 pub const PACE: Duration = Duration::from_millis(100);
 
-/// What a run has published.
+/// The published state of a run.
 #[derive(Debug)]
 pub struct Board {
     state: Mutex<BoardState>,
-    /// Tells that there is something new to fetch. Whoever listens is a viewer.
+    /// Signals changes. Each receiver is a viewer.
     changed: watch::Sender<()>,
-    enough: AtomicBool,
+    end_requested: AtomicBool,
 }
 
-/// All that viewers may see.
+/// The state that viewers may see.
 #[derive(Debug, Default)]
 pub struct BoardState {
-    /// In words.
+    /// Status of the run.
     pub status: Status,
-    /// Changes with the status.
+    /// Version of the status.
     pub status_number: u64,
-    /// The curve.
+    /// The curve of the exchange.
     pub history: History,
-    /// The scene, once it is placed.
+    /// The scene, after its parts are placed.
     pub model: Option<Arc<Model>>,
     light: Option<RoundLight>,
     light_number: u32,
@@ -54,35 +55,35 @@ pub struct BoardState {
 }
 
 impl Board {
-    /// Nothing yet. `watched`: whether run follows run.
+    /// An empty board. `watched`: whether runs repeat when files change.
     pub fn new(watched: bool) -> Self {
         let status = Status { watched, ..Status::default() };
         Self {
             state: Mutex::new(BoardState { status, ..BoardState::default() }),
             changed: watch::Sender::new(()),
-            enough: AtomicBool::new(false),
+            end_requested: AtomicBool::new(false),
         }
     }
 
-    /// A look at the state; the run may wait for it, so be quick.
+    /// Lock the state. The run may wait for the lock, so release it soon.
     pub fn state(&self) -> MutexGuard<'_, BoardState> {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
     }
 
-    /// Something to wait for news with.
+    /// A receiver that signals changes.
     pub fn viewer(&self) -> watch::Receiver<()> {
         self.changed.subscribe()
     }
 
-    /// Number of viewers' requests that wait for news.
+    /// Number of receivers that wait for changes.
     pub fn viewers(&self) -> usize {
         self.changed.receiver_count()
     }
 
-    /// Another run begins. What the last one published stays to be seen until there is something new.
+    /// Begin a run. The state of the previous run remains visible until it is replaced.
     pub fn begin(&self) {
-        self.enough.store(false, Ordering::Relaxed);
-        self.tell(|state| {
+        self.end_requested.store(false, Ordering::Relaxed);
+        self.change(|state| {
             let Status { run, placed, watched, .. } = state.status;
             state.status = Status { run: run + 1, placed, watched, ..Status::default() };
             state.history = History::default();
@@ -90,9 +91,9 @@ impl Board {
         });
     }
 
-    /// A run has ended.
+    /// End a run.
     pub fn end(&self, outcome: Result<&Report, String>) {
-        self.tell(|state| match outcome {
+        self.change(|state| match outcome {
             Ok(report) => state.status.end(report),
             Err(error) => {
                 state.status.phase = Phase::Failed;
@@ -101,17 +102,17 @@ impl Board {
         });
     }
 
-    /// End the exchange after its round. False if there is none.
+    /// End the exchange after its current round. Returns false if no exchange is running.
     pub fn stop(&self) -> bool {
         let is_exchange = self.state().status.phase == Phase::Exchange;
         if is_exchange {
-            self.enough.store(true, Ordering::Relaxed);
-            self.tell(|state| state.status.stopping = true);
+            self.end_requested.store(true, Ordering::Relaxed);
+            self.change(|state| state.status.stopping = true);
         }
         is_exchange
     }
 
-    /// A field that is newer than this, if there is one.
+    /// A snapshot of `field` with a number above `than`, if there is one.
     pub fn newer(&self, field: Field, than: u32) -> Option<Snapshot> {
         let state = self.state();
         let model = state.model.as_ref()?;
@@ -126,9 +127,9 @@ impl Board {
         (number > than).then_some(Snapshot { run: model.run, number, values })
     }
 
-    fn tell(&self, change: impl FnOnce(&mut BoardState)) {
+    fn change(&self, apply: impl FnOnce(&mut BoardState)) {
         let mut state = self.state();
-        change(&mut state);
+        apply(&mut state);
         state.status_number += 1;
         drop(state);
         self.changed.send_replace(());
@@ -136,7 +137,7 @@ impl Board {
 }
 
 impl BoardState {
-    /// Put the light of some instances into that of the scene.
+    /// Copy the radiosity of some instances, W/m², into that of the scene.
     fn publish(&mut self, instances: &[usize], radiosity: &[Rgb]) {
         let Some(light) = &mut self.light else { return };
         light.round = self.history.last().map_or(0, |last| last.round);
@@ -159,17 +160,17 @@ impl BoardState {
 
 impl Observer for Board {
     fn prepared(&self, scene: &Scene, prepared: &Prepared) {
-        self.tell(|state| state.status.prepare(scene, prepared));
+        self.change(|state| state.status.prepare(scene, prepared));
     }
 
     fn baked(&self, number: usize, part: &Baked) {
-        self.tell(|state| state.status.bake(number, part));
+        self.change(|state| state.status.bake(number, part));
     }
 
     fn placed(&self, placed: &PlacedParts, cameras: &[Camera]) {
         let run = self.state().status.run;
         let model = Arc::new(Model::new(run, placed, cameras));
-        self.tell(|state| {
+        self.change(|state| {
             state.model = Some(model);
             state.light = None;
             state.status.placed = run;
@@ -178,14 +179,14 @@ impl Observer for Board {
     }
 
     fn coupled(&self, instance: usize, coupled: &Coupled) {
-        self.tell(|state| state.status.couple(instance, coupled));
+        self.change(|state| state.status.couple(instance, coupled));
     }
 
     fn coupled_all(&self, placed: &PlacedParts, coupled: &[Coupled], optics: &Optics) {
         let (row_sums, computed) = (row_sums(placed, coupled), computed(placed, coupled));
         let seconds = seconds(placed, coupled, &StepTimes::none(coupled.len()));
         let optics = Arc::new(optics.clone());
-        self.tell(|state| {
+        self.change(|state| {
             (state.row_sums, state.computed) = (Arc::new(row_sums), Arc::new(computed));
             (state.status.seconds, state.status.phase) = (seconds, Phase::Exchange);
             let radiosity = Arc::new(vec![Rgb::BLACK; optics.emission.len()]);
@@ -197,7 +198,7 @@ impl Observer for Board {
     }
 
     fn settled(&self, outcome: &Outcome, irradiance: &[Rgb]) {
-        self.tell(|state| {
+        self.change(|state| {
             let all: Vec<usize> = (0..state.status.instances.len()).collect();
             state.publish(&all, &outcome.radiosity);
             if let Some(light) = &mut state.light {
@@ -234,6 +235,6 @@ impl Listener for Board {
     }
 
     fn ends_exchange(&self) -> bool {
-        self.enough.load(Ordering::Relaxed)
+        self.end_requested.load(Ordering::Relaxed)
     }
 }

@@ -1,4 +1,4 @@
-//! One number or colour an element, as viewers fetch them. In go what a run has published; out come bytes.
+//! Values of elements that viewers fetch. Input: the published state of a run. Output: bytes.
 
 use super::model::Model;
 use crate::equation::coupling::Coupled;
@@ -8,59 +8,60 @@ use rayon::prelude::*;
 use serde::Deserialize;
 use std::sync::Arc;
 
-/// What there is to see of elements.
+/// A quantity of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Field {
     /// W/m², linear RGB.
     Radiosity,
-    /// W/m², linear RGB; [`UNKNOWN`] on what reflects nothing until the end.
+    /// W/m², linear RGB; [`UNKNOWN`] on black elements until the end.
     Irradiance,
     /// |1 − Σ_j F_ij|.
     RowSums,
-    /// The share of an element's form factors that was computed in this run.
+    /// The share of an element's form factors that were computed in this run.
     Computed,
 }
 
-/// In the place of a number that is not known yet.
+/// Marks a value that is not known yet.
 pub const UNKNOWN: f32 = f32::MIN;
 
 /// The light of a round.
 #[derive(Debug, Clone)]
 pub struct RoundLight {
-    /// Where it is seen.
+    /// The scene's model.
     pub model: Arc<Model>,
-    /// The round that it was published after; 0 before the first.
+    /// The round after which it was published; 0 before the first.
     pub round: usize,
     /// Radiosity of all elements, W/m².
     pub radiosity: Arc<Vec<Rgb>>,
-    /// Irradiance of all elements, W/m², once it is known.
+    /// Irradiance of all elements, W/m², after the exchange.
     pub irradiance: Option<Arc<Vec<Rgb>>>,
     /// Optics of all elements.
     pub optics: Arc<Optics>,
 }
 
-/// A field at some time.
+/// The values of a field at some time.
 pub struct Snapshot {
     /// The run that it belongs to.
     pub run: u32,
-    /// Later ones have higher numbers.
+    /// Version; later snapshots have higher numbers.
     pub number: u32,
-    /// What it shows.
+    /// Its values.
     pub values: Values,
 }
 
-/// What a snapshot shows.
+/// The values of a snapshot.
 pub enum Values {
     /// Light.
     Light(RoundLight, Field),
-    /// One number an element.
+    /// One number for each element.
     Numbers(Arc<Vec<f32>>),
 }
 
 impl Snapshot {
-    /// For viewers: run, number and round (u32), exposure (f32, the factor on B/π), numbers an element (u32), then the numbers,
-    /// f32. All little-endian. Where there is no light, round and exposure are 0.
+    /// The bytes for viewers: run, number and round (u32), exposure (f32, the factor on B/π), numbers for each
+    /// element (u32), then the numbers (f32). All little-endian. Round and exposure are 0 for fields that are not
+    /// light.
     pub fn bytes(&self) -> Vec<u8> {
         let (round, (exposure, stride, numbers)) = match &self.values {
             Values::Numbers(numbers) => (0, (0.0, 1, numbers.to_vec())),
@@ -76,7 +77,7 @@ impl Snapshot {
 }
 
 impl RoundLight {
-    /// Exposure, numbers an element, numbers.
+    /// Exposure, numbers for each element, and the numbers.
     fn shown(&self, field: Field) -> (f64, u32, Vec<f32>) {
         let exposure = |light: &[Rgb]| self.model.exposure(light, &self.optics.emission).0;
         let numbers = |light: &[Rgb]| light.iter().flatten().map(|&x| x as f32).collect();
@@ -92,7 +93,7 @@ impl RoundLight {
         }
     }
 
-    /// H = (B − E)/ρ, which tells nothing where ρ is 0.
+    /// H = (B − E)/ρ, W/m²; none where ρ is 0.
     fn arriving(&self) -> Vec<[Option<f64>; 3]> {
         let Optics { reflectance, emission } = &*self.optics;
         let of = |i: usize, c: usize| {
@@ -113,7 +114,7 @@ pub fn row_sums(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<f32> {
     (0..coupled.len()).into_par_iter().map(of).collect::<Vec<_>>().concat()
 }
 
-/// The share of each element's form factors that was computed in this run.
+/// The share of each element's form factors that were computed in this run.
 pub fn computed(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<f32> {
     let of = |k: usize| computed_of(placed, coupled, k);
     (0..coupled.len()).into_par_iter().map(of).collect::<Vec<_>>().concat()
@@ -124,14 +125,14 @@ fn computed_of(placed: &PlacedParts, coupled: &[Coupled], k: usize) -> Vec<f32> 
     let own = blocks.self_block(&baked.part.self_block);
     let count = |rows: &[u32], i: usize| rows.get(i).map_or(0, |&count| count as usize);
     let share = |i: usize| {
-        // A block that something stands inside of is made of the part's own: if that is new, all of it is.
+        // A block corrected for intruders starts from the part's own block: if that is new, all of it is.
         let inside = match &blocks.corrected {
             _ if !baked.form_factors.is_reused() => own.entries_of(i),
             Some(corrected) => count(&corrected.computed_by_row, i),
             None => 0,
         };
         let computed = inside + count(&blocks.computed_by_row, i);
-        // An entry that is rounded to zero for keeping was computed all the same.
+        // An entry that is rounded to zero when stored was computed too.
         let stored = own.entries_of(i) + blocks.coupling.entries_of(i);
         (computed as f32 / stored.max(1) as f32).min(1.0)
     };

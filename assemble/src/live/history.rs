@@ -1,30 +1,30 @@
-//! The curve of an exchange: what was known of the light at which time. In go all rounds; what is kept is bounded however many
-//! there are, and looks the same on a logarithmic axis of time.
+//! The curve of an exchange: errors over time. Input: all rounds. Output: a bounded number of points that look the
+//! same on a logarithmic time axis.
 
 use serde::Serialize;
 
-/// Points of one group of parts are kept when at least this much more time has passed since the exchange began than at the one
-/// before. A century of rounds of a microsecond then leaves fewer than 4000.
-const LATER: f64 = 1.01;
+/// A point is kept if the time since the start of the exchange is at least this factor times that of the last kept
+/// point of the same group. A century of rounds of a microsecond each leaves fewer than 4000 points.
+const MIN_TIME_RATIO: f64 = 1.01;
 
-/// What was known after a round.
+/// Error estimates after a round.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Point {
-    /// Which group of parts that exchange light with each other, in order; 1 for the first.
+    /// The group of parts that exchange light with each other, in order; 1 for the first.
     pub group: usize,
     /// The round of that group; 1 for the first.
     pub round: usize,
-    /// Since the exchange began.
+    /// Time since the exchange began.
     pub seconds: f64,
     /// Error bound, W/m².
     pub bound: f64,
-    /// The bound over the group's brightest radiosity.
+    /// The bound relative to the group's brightest radiosity.
     pub relative: f64,
     /// Largest residual, W/m².
     pub residual: f64,
 }
 
-/// Points in order.
+/// The points of the curve in order.
 #[derive(Debug, Default)]
 pub struct History {
     kept: Vec<Point>,
@@ -32,11 +32,11 @@ pub struct History {
 }
 
 impl History {
-    /// Take in the next point.
+    /// Add the next point.
     pub fn add(&mut self, point: Point) {
         let before = self.kept.last().filter(|before| before.group == point.group);
-        if before.is_none_or(|before| point.seconds >= LATER * before.seconds) {
-            // The end of a group's curve is kept as it was.
+        if before.is_none_or(|before| point.seconds >= MIN_TIME_RATIO * before.seconds) {
+            // The last point of a group's curve is always kept.
             let end = self.last.filter(|last| last.group != point.group && self.kept.last() != Some(last));
             self.kept.extend(end);
             self.kept.push(point);
@@ -44,7 +44,7 @@ impl History {
         self.last = Some(point);
     }
 
-    /// The points kept, from the `from`th on.
+    /// The kept points, starting at index `from`.
     pub fn since(&self, from: usize) -> &[Point] {
         &self.kept[from.min(self.kept.len())..]
     }
@@ -77,7 +77,7 @@ mod tests {
         for pair in kept.windows(2).filter(|pair| pair[0].group == pair[1].group && pair[0].round > 200) {
             let step = pair[1].seconds / pair[0].seconds;
             // A step that a round just misses is one round longer.
-            assert!(step < LATER + 0.006, "a gap of {step} after round {}", pair[0].round);
+            assert!(step < MIN_TIME_RATIO + 0.006, "a gap of {step} after round {}", pair[0].round);
         }
     }
 }

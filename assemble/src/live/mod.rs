@@ -1,5 +1,5 @@
-//! A page that shows a run while it goes on. In goes the run, as an observer sees it; out comes a page on this machine, and from
-//! there the wish that the exchange ends after its round.
+//! A page that shows a run in progress. Input: the callbacks of the run. Output: a page on this machine, which can
+//! request that the exchange end after its current round.
 
 mod board;
 mod field;
@@ -19,7 +19,7 @@ use std::net::{Ipv4Addr, TcpListener};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// A page that is being served.
+/// The served page.
 #[derive(Debug)]
 pub struct Live {
     board: Arc<Board>,
@@ -27,19 +27,20 @@ pub struct Live {
     url: String,
 }
 
-/// How often it is asked whether to end.
-const TICK: Duration = Duration::from_millis(100);
+/// Interval at which end conditions are checked.
+const CHECK_INTERVAL: Duration = Duration::from_millis(100);
 
-/// Viewers get this long to be told how it ended.
-const FAREWELL: Duration = Duration::from_millis(500);
+/// Time for viewers to receive the final state.
+const FINAL_NEWS_TIME: Duration = Duration::from_millis(500);
 
 impl Live {
-    /// Serve the page on this port of this machine, or on any free one for 0. `watched`: whether run follows run.
+    /// Serve the page on this port of this machine, or on any free port for 0. `watched`: whether runs repeat when
+    /// files change. Fails if the port is in use.
     pub fn start(port: u16, watched: bool, monitor: &Arc<Monitor>) -> anyhow::Result<Self> {
         let listener = listen(port).map_err(|error| {
             anyhow::anyhow!(
-                "127.0.0.1:{port}: cannot serve the live page ({error}); expected a port that is free; choose another \
-                 with --live PORT, or give none for any"
+                "127.0.0.1:{port}: cannot serve the live page ({error}); expected a free port; choose another \
+                 with --live PORT, or give no port to use any"
             )
         })?;
         let guard = Guard::new(listener.local_addr()?.port())?;
@@ -55,36 +56,36 @@ impl Live {
         Ok(Self { board, monitor: Arc::clone(monitor), url })
     }
 
-    /// Where the page is.
+    /// The address of the page.
     pub fn url(&self) -> &str {
         &self.url
     }
 
-    /// A run begins; it is to be told to the observer.
+    /// Begin a run. Returns the observer to which the run must report.
     pub fn begin(&self) -> &dyn Observer {
         self.board.begin();
         &*self.board
     }
 
-    /// A run has ended.
+    /// End a run.
     pub fn end(&self, outcome: Result<&Report, String>) {
         self.board.end(outcome);
     }
 
-    /// Serve on until Ctrl-C, or until somebody closes the page.
+    /// Keep serving until Ctrl-C, or until the page is closed.
     pub fn stay(&self) {
         while !self.monitor.stopped() {
-            std::thread::sleep(TICK);
+            std::thread::sleep(CHECK_INTERVAL);
         }
     }
 }
 
 impl Drop for Live {
-    /// Viewers are told how it ended before the program does.
+    /// Viewers receive the final state before the program ends.
     fn drop(&mut self) {
         let start = Instant::now();
-        while self.board.viewers() > 0 && start.elapsed() < FAREWELL {
-            std::thread::sleep(TICK);
+        while self.board.viewers() > 0 && start.elapsed() < FINAL_NEWS_TIME {
+            std::thread::sleep(CHECK_INTERVAL);
         }
     }
 }

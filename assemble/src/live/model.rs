@@ -1,5 +1,5 @@
-//! The scene that viewers turn around. In go the parts in their places; out come bytes of their elements, and the eye that
-//! the pictures have.
+//! The scene as viewers display it. Input: the placed parts. Output: the bytes of their elements, and the camera of
+//! the pictures.
 
 use crate::picture::camera::View;
 use crate::picture::exposure::Exposure;
@@ -12,7 +12,7 @@ use serde_json::json;
 use std::ops::Range;
 use std::sync::OnceLock;
 
-/// Rays that ask what a picture shows, to expose it; its exposure itself takes the rays of all pixels.
+/// Rays that sample the visible elements for the exposure; the exposure of pictures uses the rays of all pixels.
 const RAYS: UVec2 = uvec2(96, 72);
 
 /// PlacedParts elements.
@@ -21,31 +21,31 @@ pub struct Model {
     /// The run that placed them.
     pub run: u32,
     elements: Vec<Element>,
-    /// The elements of each instance.
+    /// The range of elements of each instance.
     places: Vec<Range<usize>>,
     cameras: Vec<Camera>,
-    seen: OnceLock<PictureView>,
+    picture_view: OnceLock<PictureView>,
 }
 
-/// What the eye of the pictures sees.
+/// The view of the pictures and the elements visible in it.
 #[derive(Debug)]
 struct PictureView {
     view: View,
-    /// How far away that is which the middle of the picture shows, metres.
+    /// The distance of the surface in the middle of the picture, metres.
     depth: f64,
-    /// The elements that rays meet.
+    /// The elements that rays meet, with repetition.
     elements: Vec<usize>,
 }
 
 impl Model {
-    /// A copy of what is placed.
+    /// A copy of the placed elements.
     pub fn new(run: u32, placed: &PlacedParts, cameras: &[Camera]) -> Self {
         Self {
             run,
             elements: placed.world.elements.clone(),
             places: (0..placed.instances.len()).map(|k| placed.world.elements_of(k)).collect(),
             cameras: cameras.to_vec(),
-            seen: OnceLock::new(),
+            picture_view: OnceLock::new(),
         }
     }
 
@@ -56,16 +56,16 @@ impl Model {
 
     /// The exposure of the pictures.
     pub fn exposure(&self, light: &[Rgb], emission: &[Rgb]) -> Exposure {
-        Exposure::choose(|| self.seen().elements.iter().copied(), light, emission)
+        Exposure::choose(|| self.picture_view().elements.iter().copied(), light, emission)
     }
 
-    /// For viewers: the length of a JSON text (u32) and that text, filled up with blanks to a multiple of four; then for each
-    /// element four corners as three f32, a triangle's last one twice, metres from the centre; then for each element its
-    /// instance, u32. All little-endian.
+    /// The bytes for viewers: the length of a JSON text (u32) and that text, padded with spaces to a multiple of
+    /// four; for each element four corners as three f32, with a triangle's last corner repeated, metres from the
+    /// centre; for each element its instance (u32). All little-endian.
     pub fn bytes(&self) -> Vec<u8> {
         let around = Aabb::around(self.elements.iter().flat_map(|element| element.corners.as_slice()));
         let centre = around.centre();
-        let PictureView { view, depth, .. } = self.seen();
+        let PictureView { view, depth, .. } = self.picture_view();
         let head = json!({
             "run": self.run,
             "elements": self.elements.len(),
@@ -92,9 +92,9 @@ impl Model {
         bytes
     }
 
-    /// Found when it is first asked for: not by the run, which has better things to do.
-    fn seen(&self) -> &PictureView {
-        self.seen.get_or_init(|| {
+    /// Computed on first use in the server's thread, to save the run's time.
+    fn picture_view(&self) -> &PictureView {
+        self.picture_view.get_or_init(|| {
             let index = RayIndex::new(&self.elements);
             let view = View::of_scene(&self.cameras, &self.elements, &index);
             let depth = index.first_front(view.position, -view.back).map(|hit| hit.distance);
@@ -107,7 +107,7 @@ impl Model {
         })
     }
 
-    /// How far away the elements are on average, where the middle of the picture shows none.
+    /// The mean distance of the elements, for pictures whose middle shows none.
     fn middle_depth(&self, view: &View) -> f64 {
         let depths = self.elements.iter().map(|e| (view.position - e.centroid).dot(view.back));
         (depths.sum::<f64>() / self.elements.len() as f64).max(1e-3)

@@ -1,7 +1,7 @@
-//! The page's server. In go requests; out come the page's files, snapshots of fields, and news as server-sent events.
+//! The page's server. Input: requests. Output: the page's files, snapshots of fields, and news as server-sent events.
 //!
-//! Each viewer has a connection of its own and fetches a field when it has shown the last: a slow one skips rounds, and nobody
-//! waits for it.
+//! Each viewer has its own connection and fetches a field after it has shown the previous one: slow viewers skip
+//! rounds, and nothing waits for them.
 
 use super::board::{Board, PACE};
 use super::field::Field;
@@ -25,21 +25,22 @@ use std::time::Duration;
 use tokio::task::spawn_blocking;
 use tokio::time::{Instant, sleep, timeout_at};
 
-/// What requests are answered from.
+/// The data from which requests are answered.
 #[derive(Clone)]
 pub struct Site {
-    /// What the run has published.
+    /// The published state of the run.
     pub board: Arc<Board>,
     /// The run's progress.
     pub monitor: Arc<Monitor>,
-    /// Who may ask.
+    /// Access control.
     pub guard: Guard,
 }
 
-/// A request for something new is answered after this long even if there is nothing.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// Time after which a request for a newer snapshot is answered even if there is none.
+const MAX_WAIT: Duration = Duration::from_secs(10);
 
-/// On every answer: nothing is loaded from elsewhere, nothing is kept, and the token in the address is told to nobody.
+/// Headers of every response: nothing is loaded from elsewhere, nothing is stored, and the address with its token is
+/// not sent to other sites.
 const HEADERS: [(HeaderName, &str); 6] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -65,7 +66,7 @@ const FILES: [(&str, &str, &str); 8] = [
     ("three.core.min.js", "text/javascript", include_str!("vendor/three.core.min.js")),
 ];
 
-/// All that is served. Whatever does not begin with the token is refused.
+/// The routes of the server. Requests without the token are refused.
 pub fn router(site: Site) -> Router {
     let path = |name: &str| site.guard.path(name);
     let mut router = Router::new();
@@ -103,20 +104,20 @@ async fn model(State(site): State<Site>) -> Response {
     }
 }
 
-/// What a viewer has already.
+/// The query of a field request.
 #[derive(Deserialize)]
 struct FieldQuery {
-    /// The number of the newest snapshot; 0 for none.
+    /// The version of the newest snapshot that the viewer has; 0 for none.
     after: u32,
 }
 
-/// A field newer than what the viewer has, as soon as there is one.
+/// A newer snapshot of a field, as soon as there is one.
 async fn field(
     State(site): State<Site>,
     Path(field): Path<Field>,
     Query(known): Query<FieldQuery>,
 ) -> Response {
-    let (mut changes, end) = (site.board.viewer(), Instant::now() + PATIENCE);
+    let (mut changes, end) = (site.board.viewer(), Instant::now() + MAX_WAIT);
     loop {
         if let Some(snapshot) = site.board.newer(field, known.after) {
             return bytes(move || snapshot.bytes()).await;
@@ -127,7 +128,7 @@ async fn field(
     }
 }
 
-/// Bytes that take a while to make, while others are served.
+/// Create bytes in another thread, while other requests are served.
 async fn bytes(make: impl FnOnce() -> Vec<u8> + Send + 'static) -> Response {
     match spawn_blocking(make).await {
         Ok(bytes) => ([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response(),
@@ -143,7 +144,7 @@ async fn stop(State(site): State<Site>) -> Response {
     }
 }
 
-/// End the program, if no run is under way.
+/// End the program, unless a run is in progress.
 async fn close(State(site): State<Site>) -> Response {
     let phase = site.board.state().status.phase;
     if phase.is_over() {
@@ -154,23 +155,23 @@ async fn close(State(site): State<Site>) -> Response {
     }
 }
 
-/// What is new to a viewer, as JSON.
+/// News for a viewer, as JSON.
 #[derive(Serialize)]
 struct News {
-    /// The run, if anything of it but its light is new.
+    /// The status of the run, if it has changed.
     #[serde(skip_serializing_if = "Option::is_none")]
     status: Option<Status>,
-    /// Points of the curve that follow those already sent.
+    /// Points of the curve that were not sent yet.
     points: Vec<Point>,
     /// The newest round.
     now: Option<Point>,
-    /// The paper's steps 5 to 8 by now.
+    /// Times of the paper's steps 5 to 8 so far, seconds.
     steps: [f64; 4],
-    /// What is being done, steps done, and steps in all.
+    /// The current stage, its finished steps and its total steps.
     stage: (String, u64, u64),
 }
 
-/// What a viewer has been sent.
+/// The state that a viewer has received.
 #[derive(Default, PartialEq, Clone)]
 struct ViewerState {
     run: u32,
@@ -181,7 +182,7 @@ struct ViewerState {
 }
 
 async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event, Infallible>>> {
-    // Held as long as the viewer is there: it counts as one.
+    // The receiver counts as a viewer while it exists.
     let viewer = site.board.viewer();
     let stream = unfold((site, ViewerState::default(), viewer), |(site, mut sent, viewer)| async move {
         loop {
@@ -197,7 +198,7 @@ async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event
     Sse::new(stream).keep_alive(KeepAlive::default())
 }
 
-/// What is new since, if anything is.
+/// The changes since `sent`, if there are any.
 fn news(site: &Site, sent: &mut ViewerState) -> Option<News> {
     let progress = site.monitor.now();
     let state = site.board.state();
@@ -220,7 +221,7 @@ fn news(site: &Site, sent: &mut ViewerState) -> Option<News> {
         points,
         now: now.now,
         steps: [seconds.step5, seconds.step6, seconds.step7, seconds.step8],
-        stage: now.stage.clone().expect("just told"),
+        stage: now.stage.clone().expect("set above"),
     };
     *sent = now;
     Some(news)

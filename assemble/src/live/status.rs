@@ -1,5 +1,5 @@
-//! What a viewer is told in words: how far a run is and what became of its parts. In go parts, instances and their origins; out
-//! comes plain data for JSON.
+//! The status of a run as text: its phase, and the state of its parts and blocks. Input: parts, instances and their
+//! origins. Output: plain data for JSON.
 
 use crate::equation::coupling::Coupled;
 use crate::report::Report;
@@ -10,44 +10,44 @@ use equilux_bake::oven::prepare::{Prepared, PreparedPart};
 use equilux_formats::{Instance, Scene};
 use serde::Serialize;
 
-/// Where a run is.
+/// The phase of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Phase {
-    /// Files are read, parts get their elements.
+    /// Files are read, and parts are divided into elements.
     #[default]
     Reading,
-    /// Form factors of parts.
+    /// Form factors within parts are computed.
     Baking,
-    /// Form factors between parts.
+    /// Form factors between parts are computed.
     Coupling,
-    /// Rounds: the only phase that may be ended early.
+    /// Rounds of the exchange; the only phase that can end early.
     Exchange,
-    /// Outputs.
+    /// Outputs are written.
     Writing,
     /// All is written.
     Done,
-    /// It ended with an error.
+    /// The run ended with an error.
     Failed,
 }
 
 impl Phase {
-    /// Whether nothing more happens.
+    /// Whether the run is over.
     pub fn is_over(self) -> bool {
         matches!(self, Self::Done | Self::Failed)
     }
 }
 
-/// What became of some form factors.
+/// The state of a block.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BlockState {
-    /// Not looked at yet.
+    /// Not processed yet.
     #[default]
     Waiting,
-    /// They were in the cache.
+    /// Read from the cache.
     Reused,
-    /// They were computed, all or some.
+    /// Computed, entirely or in part.
     Computed,
 }
 
@@ -64,7 +64,7 @@ pub struct PartStatus {
     pub name: String,
     /// Its elements.
     pub elements: usize,
-    /// What became of its own form factors.
+    /// State of its self block.
     pub own: BlockState,
     /// The same in a sentence.
     pub reason: String,
@@ -77,28 +77,28 @@ pub struct InstanceStatus {
     pub name: String,
     /// The number of its part.
     pub part: usize,
-    /// What became of what couples it with all others.
+    /// State of its coupling block.
     pub coupling: BlockState,
     /// The same in a sentence.
     pub reason: String,
-    /// What became of its own form factors where something foreign stands inside it.
+    /// State of its self block with other parts inside it, if there are any.
     pub inside: Option<BlockState>,
 }
 
-/// All of a run but its light.
+/// The status of a run, without its light.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Status {
-    /// Counts the runs of a watched scene; 1 for the first.
+    /// Number of the run of a watched scene; 1 for the first.
     pub run: u32,
-    /// The run that last put parts in their places; 0 for none.
+    /// The run that last placed parts; 0 for none.
     pub placed: u32,
     /// The scene's name.
     pub scene: String,
-    /// Where the run is.
+    /// The phase of the run.
     pub phase: Phase,
-    /// Whether somebody asked the exchange to end.
+    /// Whether the end of the exchange was requested.
     pub stopping: bool,
-    /// Whether another run follows when a file changes.
+    /// Whether the run repeats when a file changes.
     pub watched: bool,
     /// Number of elements.
     pub elements: usize,
@@ -106,20 +106,20 @@ pub struct Status {
     pub parts: Vec<PartStatus>,
     /// The placed parts.
     pub instances: Vec<InstanceStatus>,
-    /// The paper's steps: what is known by now.
+    /// The times of the paper's steps so far.
     pub seconds: Seconds,
-    /// Whether the error asked for is proved; none before the end.
+    /// Whether the required error bound is proved; none before the end.
     pub converged: Option<bool>,
-    /// The outputs, for a person.
+    /// The paths of the outputs.
     pub outputs: Vec<String>,
-    /// What a person should know.
+    /// Notes of the report.
     pub notes: Vec<String>,
-    /// Why the run failed.
+    /// The error, if the run failed.
     pub error: Option<String>,
 }
 
 impl Status {
-    /// The parts and instances are known.
+    /// Record the parts and instances.
     pub fn prepare(&mut self, scene: &Scene, prepared: &Prepared) {
         self.scene.clone_from(&scene.name);
         self.phase = Phase::Baking;
@@ -138,13 +138,13 @@ impl Status {
         self.elements = self.instances.iter().map(|instance| self.parts[instance.part].elements).sum();
     }
 
-    /// A part is baked.
+    /// Record a baked part.
     pub fn bake(&mut self, number: usize, baked: &Baked) {
         let part = &mut self.parts[number];
         (part.own, part.reason) = (BlockState::from(&baked.form_factors), baked.form_factors.to_string());
     }
 
-    /// An instance is coupled.
+    /// Record the blocks of an instance.
     pub fn couple(&mut self, number: usize, coupled: &Coupled) {
         let instance = &mut self.instances[number];
         (instance.coupling, instance.reason) =

@@ -1,5 +1,5 @@
-//! Which element every point of a picture shows. In go a [`View`] and the elements; out comes a [`Canvas`] that is
-//! traced once and then painted as often as the light changes.
+//! The element that each point of a picture shows. Input: a [`View`] and the elements. Output: a [`Canvas`], traced
+//! once and painted whenever the light changes.
 
 use crate::picture::camera::View;
 use equilux_bake::rays::RayIndex;
@@ -8,7 +8,7 @@ use glam::DVec2;
 use image::RgbImage;
 use rayon::prelude::*;
 
-/// Where in a pixel the rays go through: a rotated grid, so that each has a row and a column of its own.
+/// Positions of the rays in a pixel: a rotated grid, so that each has its own row and column.
 const SAMPLES: [DVec2; 4] =
     [DVec2::new(0.375, 0.125), DVec2::new(0.875, 0.375), DVec2::new(0.125, 0.625), DVec2::new(0.625, 0.875)];
 
@@ -16,12 +16,12 @@ const SAMPLES: [DVec2; 4] =
 #[derive(Debug)]
 pub struct Canvas {
     view: View,
-    /// Row after row from the top left, a pixel's samples together.
+    /// The elements at the samples of each pixel, row after row from the top left.
     pixels: Vec<[Option<u32>; SAMPLES.len()]>,
 }
 
 impl Canvas {
-    /// Looks with `view` at the fronts of the elements in `index`.
+    /// Trace the fronts of the elements in `index` with `view`.
     pub fn trace(view: View, index: &RayIndex) -> Self {
         let width = view.width as usize;
         let meets = |point| Some(index.first_front(view.position, view.ray(point))?.element as u32);
@@ -35,13 +35,13 @@ impl Canvas {
         &self.view
     }
 
-    /// The element of every sample that shows one.
+    /// The elements of all samples that show one.
     pub fn elements(&self) -> impl Iterator<Item = usize> {
         self.pixels.iter().flatten().flatten().map(|&element| element as usize)
     }
 
-    /// The picture in which a sample that shows an element has the linear RGB (0..1) that `colour` gives for its image
-    /// point and element, and the others that of the `background`. A pixel is the mean of its samples, in sRGB.
+    /// The picture in which each sample that shows an element gets the linear RGB (0..1) that `colour` returns for
+    /// its image point and element, and other samples get `background`. A pixel is the mean of its samples, in sRGB.
     pub fn paint(&self, background: Rgb, colour: impl Fn(DVec2, usize) -> Rgb + Sync) -> RgbImage {
         let width = self.view.width as usize;
         let pixel = |(i, samples): (usize, &[Option<u32>; SAMPLES.len()])| {

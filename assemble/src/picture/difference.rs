@@ -1,7 +1,7 @@
-//! How far light is from a reference, in false colours: blue where ours is darker, red where it is brighter, white where the
-//! two agree.
+//! The difference of light from a reference in false colours: blue where ours is darker, red where it is brighter,
+//! white where they agree.
 
-use super::interpolation::Interpolated;
+use super::interpolation::InterpolatedIrradiance;
 use crate::gather::points::{Place, located, read_light};
 use crate::picture::BACKGROUND;
 use crate::picture::canvas::Canvas;
@@ -12,15 +12,15 @@ use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use std::path::Path;
 
-/// The colours of ours darker, alike and brighter, linear RGB; far enough from each other for those who do not see red and green.
+/// Colours for darker, equal and brighter light, linear RGB; distinguishable with red-green colour blindness.
 const DARKER: Rgb = Rgb([0.02, 0.13, 0.52]);
-const ALIKE: Rgb = Rgb::splat(0.9);
+const EQUAL: Rgb = Rgb::splat(0.9);
 const BRIGHTER: Rgb = Rgb([0.64, 0.05, 0.01]);
 
-/// The colours are full where this share of the places is further off.
-const FULL: f64 = 0.05;
+/// The colours saturate at the difference that this share of the points exceeds.
+const SATURATED_SHARE: f64 = 0.05;
 
-/// Light at places, to compare with.
+/// Reference light at points.
 #[derive(Debug)]
 pub struct Reference {
     places: Vec<Place>,
@@ -29,30 +29,30 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Read a table with the columns that [`crate::gather::points::read`] asks for, and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or `H_r`, `H_g`,
-    /// `H_b`, W/m². Fails if it cannot be read or has no such columns.
+    /// Read a table with the columns of [`crate::gather::points::read`], and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or
+    /// `H_r`, `H_g`, `H_b`, W/m². Fails if it cannot be read or lacks these columns.
     pub fn read(file: &Path, origin: DVec3) -> Result<Self> {
         let (places, irradiance) = read_light(file, origin)?;
         Ok(Self { places, irradiance })
     }
 }
 
-/// Our light beside a reference's, at its places.
+/// The difference of our light from a reference at the reference's points.
 #[derive(Debug)]
 pub struct Difference<'a> {
     elements: &'a [Element],
-    /// By place and, scaled by the size of the scene, by normal, so that who looks another way is far away: luminance of our
-    /// irradiance minus the reference's, over its mean.
+    /// Luminance of our irradiance minus the reference's, relative to the reference's mean, by position and by normal
+    /// scaled with the scene's size, so that points with another normal are far away.
     off: RTree<GeomWithData<[f64; 6], f64>>,
-    /// Largest coordinate of the places, metres.
+    /// Largest coordinate of the points, metres.
     size: f64,
-    /// Where the colours are full.
-    full: f64,
+    /// The difference at which the colours saturate.
+    saturation: f64,
 }
 
 impl<'a> Difference<'a> {
-    /// Compare the light of elements.
-    pub fn new(reference: &Reference, elements: &'a [Element], light: &Interpolated) -> Self {
+    /// Compare the light of elements with a reference.
+    pub fn new(reference: &Reference, elements: &'a [Element], light: &InterpolatedIrradiance) -> Self {
         let size = reference.places.iter().map(|p| p.point.abs().max_element()).fold(0.0, f64::max);
         let theirs: Vec<f64> = reference.irradiance.iter().map(|h| h.luminance()).collect();
         let mean = theirs.iter().sum::<f64>() / theirs.len() as f64;
@@ -65,9 +65,9 @@ impl<'a> Difference<'a> {
         let off: Vec<_> = reference.places.iter().zip(theirs).zip(ours).filter_map(off).collect();
         let mut sizes: Vec<f64> = off.iter().map(|row| row.data.abs()).collect();
         sizes.sort_by(f64::total_cmp);
-        let rank = (sizes.len() as f64 * (1.0 - FULL)) as usize;
-        let full = round_up(sizes.get(rank).copied().unwrap_or(0.0));
-        Self { elements, off: RTree::bulk_load(off), size, full }
+        let rank = (sizes.len() as f64 * (1.0 - SATURATED_SHARE)) as usize;
+        let saturation = round_up(sizes.get(rank).copied().unwrap_or(0.0));
+        Self { elements, off: RTree::bulk_load(off), size, saturation }
     }
 
     fn at(&self, element: usize, point: DVec3) -> f64 {
@@ -75,22 +75,22 @@ impl<'a> Difference<'a> {
         self.off.nearest_neighbor(&key(&place, self.size)).map_or(0.0, |row| row.data)
     }
 
-    /// What the canvas shows, in false colours.
+    /// The picture of the canvas in false colours.
     pub fn picture(&self, canvas: &Canvas) -> RgbImage {
         canvas.paint(BACKGROUND, |point, element| {
-            let off = self.at(element, canvas.view().onto(point, &self.elements[element])) / self.full;
+            let off = self.at(element, canvas.view().onto(point, &self.elements[element])) / self.saturation;
             let end = if off < 0.0 { DARKER } else { BRIGHTER };
             let share = off.abs().min(1.0);
-            ALIKE + (end - ALIKE) * share
+            EQUAL + (end - EQUAL) * share
         })
     }
 
-    /// What the colours mean.
+    /// The legend of the colours.
     pub fn legend(&self) -> String {
         format!(
-            "error.png shows at each place of the reference our irradiance minus its: white for none, deep blue for {0} % of the mean darker, deep red for \
+            "error.png shows our irradiance minus the reference at each of its points: white for no difference, deep blue for {0} % of the mean darker, deep red for \
              {0} % brighter",
-            100.0 * self.full
+            100.0 * self.saturation
         )
     }
 }
@@ -107,6 +107,6 @@ fn round_up(number: f64) -> f64 {
     }
     let decade = 10f64.powf(number.log10().floor());
     let step = [1.0, 2.0, 5.0].into_iter().find(|step| step * decade >= number).unwrap_or(10.0);
-    // Written out and read again, so that the number printed is the number used.
+    // Printed and parsed, so that the printed number is the number in use.
     format!("{:.0e}", step * decade).parse().unwrap_or(number)
 }

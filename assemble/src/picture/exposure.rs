@@ -1,15 +1,15 @@
-//! From light to what a screen can show. In goes radiosity; out comes linear RGB in 0..1.
+//! Converts light to display values. Input: radiosity. Output: linear RGB in 0..1.
 //!
-//! A surface shows its radiance L = B/π. After exposure x = k·L each channel goes through
-//! t(x) = x up to the knee s = 0.8 and t(x) = 1 − (1 − s)·exp(−(x − s)/(1 − s)) above: one smooth curve that leaves
-//! most of the picture as it is and lets lamps fade into white.
+//! The displayed radiance is L = B/π. After exposure, x = k·L, each channel is mapped by t(x) = x up to the knee s =
+//! 0.8 and t(x) = 1 − (1 − s)·exp(−(x − s)/(1 − s)) above: one smooth curve that leaves most of the picture unchanged
+//! and lets lamps fade into white.
 
 use equilux_formats::Rgb;
 use std::f64::consts::PI;
 
-/// Where the tone curve leaves the straight line.
+/// The end of the straight part of the tone curve.
 const KNEE: f64 = 0.8;
-/// The part of the picture that stays below the knee.
+/// The share of the picture that stays below the knee.
 const BELOW_KNEE: f64 = 0.95;
 
 /// The factor k on radiance, (W/(m²·sr))⁻¹.
@@ -17,10 +17,10 @@ const BELOW_KNEE: f64 = 0.95;
 pub struct Exposure(pub f64);
 
 impl Exposure {
-    /// Brings the luminance that 95 % of what is shown stay below up to 0.8. Lamps do not count, unless they are all that
-    /// shines; where nothing does the factor is 1.
+    /// Map the 95th percentile of the displayed luminance to 0.8. Lamps are excluded unless nothing else is lit;
+    /// without any light the factor is 1.
     ///
-    /// `shown`: the elements, as often as they count. `radiosity` and `emission`: W/m², one row an element.
+    /// `shown`: the elements, each as often as it is displayed. `radiosity` and `emission`: W/m², one row an element.
     pub fn choose<I: Iterator<Item = usize>>(
         shown: impl Fn() -> I,
         radiosity: &[Rgb],
@@ -33,13 +33,13 @@ impl Exposure {
         Self(lit(false).or_else(|| lit(true)).map_or(1.0, |light| KNEE / light))
     }
 
-    /// What a screen shows of `radiosity` (W/m²): linear RGB, 0..1.
+    /// The displayed colour of `radiosity` (W/m²): linear RGB, 0..1.
     pub fn shown(self, radiosity: Rgb) -> Rgb {
         radiosity.map(|b| tone(self.0 * b / PI))
     }
 }
 
-/// What 95 % of `lights` stay below.
+/// The 95th percentile of `lights`.
 fn bright(mut lights: Vec<f64>) -> Option<f64> {
     let rank = (lights.len().checked_sub(1)? as f64 * BELOW_KNEE) as usize;
     Some(*lights.select_nth_unstable_by(rank, f64::total_cmp).1)

@@ -1,20 +1,20 @@
-//! Irradiance anywhere on an element: its own, or between the values at its corners.
+//! Irradiance at any point of an element: the element's own, or interpolated between the values at its corners.
 
 use equilux_formats::{Element, Rgb};
 use glam::DVec3;
 
-/// The light of elements.
+/// The irradiance of elements.
 #[derive(Debug)]
-pub struct Interpolated<'a> {
+pub struct InterpolatedIrradiance<'a> {
     /// The elements.
     pub elements: &'a [Element],
-    /// Irradiance at their corners, W/m², if it is to be interpolated.
+    /// Irradiance at their corners, W/m², if it is interpolated.
     pub corners: Option<&'a [[Rgb; 4]]>,
     /// Their own irradiance, W/m².
     pub flat: &'a [Rgb],
 }
 
-impl Interpolated<'_> {
+impl InterpolatedIrradiance<'_> {
     /// The irradiance at a point of an element, W/m².
     pub fn at(&self, element: usize, point: DVec3) -> Rgb {
         let Some(corners) = self.corners else { return self.flat[element] };
@@ -26,8 +26,9 @@ impl Interpolated<'_> {
     }
 }
 
-/// What each corner of a convex polygon has to say at a point inside: mean value coordinates, which are linear on triangles
-/// (Floater 2003). w_i = (tan(α_{i−1}/2) + tan(α_i/2)) / r_i with the angles α at the point between neighbouring corners.
+/// The weights of the corners of a convex polygon at a point inside: mean value coordinates, which are linear on
+/// triangles (Floater 2003). w_i = (tan(α_{i−1}/2) + tan(α_i/2)) / r_i with the angles α at the point between
+/// adjacent corners.
 fn weights(element: &Element, point: DVec3) -> [f64; 4] {
     let corners = element.corners.as_slice();
     let count = corners.len();
@@ -45,7 +46,7 @@ fn weights(element: &Element, point: DVec3) -> [f64; 4] {
     if sum.is_finite() && sum > 0.0 { weights.map(|weight| weight / sum) } else { nearest(corners, point) }
 }
 
-/// All weight to the nearest corner: for points on corners and edges, where the formula divides by zero.
+/// All weight on the nearest corner, for points on corners and edges, where the formula divides by zero.
 fn nearest(corners: &[DVec3], point: DVec3) -> [f64; 4] {
     let near = |&i: &usize, &j: &usize| {
         corners[i].distance_squared(point).total_cmp(&corners[j].distance_squared(point))

@@ -1,4 +1,5 @@
-//! Pictures of the light and of the elements. In go a [`Canvas`] and per-element light; out come images and PNG files.
+//! Pictures of the light and of the elements. Input: a [`Canvas`] and per-element light. Output: images and PNG
+//! files.
 
 pub mod camera;
 pub mod canvas;
@@ -19,13 +20,13 @@ use image::imageops::{self, FilterType};
 use std::io;
 use std::path::Path;
 
-/// Behind everything, linear RGB: a dark grey that neither lit nor unlit surfaces have by chance.
+/// Background, linear RGB: a dark grey that is unlikely as the colour of a surface.
 pub const BACKGROUND: Rgb = Rgb::splat(0.02);
-/// Wireframe: paper, surfaces and lines, linear RGB.
+/// Colours of the wireframe: background, surfaces and lines, linear RGB.
 const PAPER: Rgb = Rgb::WHITE;
 const SURFACE: Rgb = Rgb::splat(0.85);
 const LINE: Rgb = Rgb::splat(0.01);
-/// Between pictures that stand side by side, pixels.
+/// Gap between pictures side by side, pixels.
 const GAP: u32 = 6;
 /// Half the width of a line between two elements, pixels.
 const HALF_LINE: f64 = 0.7;
@@ -36,8 +37,8 @@ pub fn shade(canvas: &Canvas, radiosity: &[Rgb], exposure: Exposure) -> RgbImage
     canvas.paint(BACKGROUND, |_, element| colours[element])
 }
 
-/// The edges of the elements as dark lines on light ground, hidden ones left out. `elements` are those that the canvas
-/// was traced with.
+/// The visible edges of the elements as dark lines on a light background. `elements`: those with which the canvas was
+/// traced.
 pub fn wireframe(canvas: &Canvas, elements: &[Element]) -> RgbImage {
     canvas.paint(PAPER, |point, element| {
         let corners = elements[element].corners.as_slice();
@@ -67,14 +68,14 @@ pub fn strip(pictures: &[RgbImage]) -> RgbImage {
 fn edge_distance(canvas: &Canvas, corners: &[DVec3], point: DVec2) -> f64 {
     let project = |i: usize| canvas.view().project(corners[i % corners.len()]);
     let to_edge = |i| {
-        // In homogeneous coordinates the line through two points is their cross product, also behind the eye.
+        // In homogeneous coordinates the line through two points is their cross product, even behind the camera.
         let line = project(i).cross(project(i + 1));
         (line.dot(point.extend(1.0)) / line.truncate().length()).abs()
     };
     (0..corners.len()).map(to_edge).fold(f64::INFINITY, f64::min)
 }
 
-/// Writes `image` to `path` as PNG. Fails when it cannot be written there.
+/// Write `image` to `path` as PNG. Fails if it cannot be written.
 pub fn write_png(path: &Path, image: &RgbImage) -> Result<()> {
     output_file::write(path, |out| image.write_with_encoder(PngEncoder::new(out)).map_err(io::Error::other))
 }

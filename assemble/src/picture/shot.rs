@@ -1,12 +1,12 @@
-//! A picture that somebody asks for: from this camera, with flat or smooth light, and how far it is from a reference. In goes a
-//! [`Shot`] and the light of a scene; out come PNG files and what is to be said of them.
+//! A requested picture: from a given camera, with flat or smooth light, and optionally its difference from a
+//! reference. Input: a [`Shot`] and the light of a scene. Output: PNG files and notes about them.
 
 use crate::output_file::WrittenFiles;
 use crate::picture::camera::View;
 use crate::picture::canvas::Canvas;
 use crate::picture::difference::{Difference, Reference};
 use crate::picture::exposure::Exposure;
-use crate::picture::interpolation::Interpolated;
+use crate::picture::interpolation::InterpolatedIrradiance;
 use crate::picture::smooth::corner_irradiance;
 use crate::picture::{BACKGROUND, shade, write_png};
 use crate::solve::Solved;
@@ -15,23 +15,24 @@ use equilux_formats::{Camera, Error, Result, Scene};
 use glam::DVec3;
 use std::path::{Path, PathBuf};
 
-/// What to draw.
+/// A requested picture.
 #[derive(Debug, Clone)]
 pub struct Shot {
-    /// From where.
+    /// The viewpoint.
     pub eye: Eye,
-    /// Width and height, pixels; none for what suits the camera.
+    /// Width and height, pixels; none for the camera's default.
     pub size: Option<[u32; 2]>,
     /// How light is drawn.
     pub shading: Shading,
-    /// Stops above what suits the scene: each makes the picture twice as bright.
+    /// Exposure relative to the automatic one, stops: each doubles the brightness.
     pub stops: f64,
-    /// A table of light, to show in false colours how far ours is from it.
+    /// A table of reference light for a picture of the difference in false colours.
     pub against: Option<PathBuf>,
 }
 
 impl Shot {
-    /// Fail where nothing could be seen, before any work.
+    /// Check before any computation that the viewpoint exists. Fails if there is no such camera or the points
+    /// coincide.
     pub fn check(&self, cameras: &[Camera], file: &Path) -> Result<()> {
         match &self.eye {
             Eye::Scene => Ok(()),
@@ -45,18 +46,18 @@ impl Shot {
     }
 }
 
-/// From where a picture is taken.
+/// The viewpoint of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Eye {
-    /// The scene's first camera, or, without any, one that has all of it in the picture.
+    /// The scene's first camera, or otherwise one that frames the scene.
     Scene,
-    /// The scene's camera of this name, or of this number from 1.
+    /// The scene's camera with this name, or with this number, counting from 1.
     Camera(String),
-    /// From a point to another, metres, with a vertical field of view, radians.
+    /// From one point to another, metres, with a vertical field of view.
     Points {
-        /// Where the eye is.
+        /// The position of the camera.
         from: DVec3,
-        /// What is in the middle of the picture.
+        /// The point in the middle of the picture.
         to: DVec3,
         /// Vertical field of view, radians.
         field_of_view: f64,
@@ -73,7 +74,8 @@ pub enum Shading {
     Smooth,
 }
 
-/// Draw a shot into `folder`. `against` is what `shot` names, read.
+/// Draw a shot into `folder`. `against`: the loaded reference that `shot` names. Fails if a picture cannot be
+/// written.
 pub fn draw(
     shot: &Shot,
     against: Option<&Reference>,
@@ -93,7 +95,7 @@ pub fn draw(
         Shading::Flat => None,
         Shading::Smooth => Some(corner_irradiance(elements, &index, &solved.irradiance)),
     };
-    let light = Interpolated { elements, corners: corners.as_deref(), flat: &solved.irradiance };
+    let light = InterpolatedIrradiance { elements, corners: corners.as_deref(), flat: &solved.irradiance };
     let picture = match shot.shading {
         Shading::Flat => shade(&canvas, solved.radiosity(), exposure),
         Shading::Smooth => canvas.paint(BACKGROUND, |point, element| {
@@ -107,8 +109,8 @@ pub fn draw(
     let mut drawn = WrittenFiles {
         paths: vec![path],
         notes: vec![format!(
-            "render.png shows radiance times {:.4} m² sr/W, {:+.1} stops from what suits the scene, in sRGB; above 0.8 it bends \
-             towards white",
+            "render.png shows radiance times {:.4} m² sr/W, {:+.1} stops from the automatic exposure, in sRGB; values above \
+             0.8 fade to white",
             exposure.0, shot.stops
         )],
     };
@@ -122,7 +124,7 @@ pub fn draw(
     Ok(drawn)
 }
 
-/// Fail where there is no such camera.
+/// The view of a shot. Fails if there is no such camera.
 fn view(shot: &Shot, scene: &Scene, framing: impl FnOnce() -> View) -> Result<View> {
     let Scene { cameras, file, origin, .. } = scene;
     let view = match &shot.eye {
@@ -138,7 +140,7 @@ fn view(shot: &Shot, scene: &Scene, framing: impl FnOnce() -> View) -> Result<Vi
     })
 }
 
-/// The camera of a name, or of a number from 1.
+/// The camera with this name, or with this number, counting from 1.
 fn camera<'a>(name: &str, cameras: &'a [Camera], file: &Path) -> Result<&'a Camera> {
     let by_name = cameras.iter().find(|camera| camera.name == name);
     let by_number = || name.parse::<usize>().ok().and_then(|number| cameras.get(number.checked_sub(1)?));
@@ -149,7 +151,7 @@ fn camera<'a>(name: &str, cameras: &'a [Camera], file: &Path) -> Result<&'a Came
             file,
             format!("has no camera `{name}`, but {found}"),
             "the name or number of a camera of the scene",
-            "choose one of them, or say where to look from with --from and --to",
+            "choose one of them, or set a viewpoint with --from and --to",
         )
     })
 }

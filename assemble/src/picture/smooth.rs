@@ -1,4 +1,5 @@
-//! Irradiance at the corners of elements, from the irradiance of the elements that share them.
+//! Irradiance at the corners of elements, averaged over the elements that share them. Input: elements and the
+//! irradiance of each. Output: one value for each corner.
 //!
 //! A corner has the mean of the elements around it that lie in about the same plane and whose centroids see each other:
 //! light does not leak below a wall that stands on a floor. An element whose centroid is covered, by a crate on the floor
@@ -12,22 +13,22 @@ use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
-/// Corners that are nearer to each other than this share of an element's size are one.
-const SAME: f64 = 1e-3;
+/// Maximum distance of corners that count as one, as a share of an element's size.
+const SAME_CORNER_SHARE: f64 = 1e-3;
 
-/// Elements whose normals have at least this cosine belong to one smooth surface: edges of up to 25 degrees.
-const SMOOTH: f64 = 0.9;
+/// Minimum cosine between the normals of elements of one smooth surface: edges of up to 25 degrees.
+const MIN_SMOOTH_COSINE: f64 = 0.9;
 
-/// Middles look at each other from this share of an element's size above it.
-const ABOVE: f64 = 1e-3;
+/// Height above an element at which visibility between centres is tested, as a share of the element's size.
+const TEST_HEIGHT_SHARE: f64 = 1e-3;
 
 /// A share of the brightest light that is rounding.
-const DARK: f64 = 1e-9;
+const DARK_SHARE: f64 = 1e-9;
 
 /// A centroid is covered by what lies this close above it, as a share of the element's size.
-const CLOSE: f64 = 0.1;
+const MAX_COVER_DISTANCE_SHARE: f64 = 0.1;
 
-/// Irradiance at each corner, W/m²; of triangles the last is not used.
+/// Irradiance at each corner, W/m²; the last value of a triangle is unused.
 pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[Rgb]) -> Vec<[Rgb; 4]> {
     let corners = elements.iter().enumerate().flat_map(|(number, element)| {
         element.corners.as_slice().iter().map(move |corner| GeomWithData::new(corner.to_array(), number))
@@ -36,15 +37,17 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
     let brightest = irradiance.iter().flatten().copied().fold(0.0, f64::max);
     let is_covered = |(element, h): (&Element, &Rgb)| {
         let above = index.first_hit(lifted(element), element.normal);
-        let is_dark = h.iter().all(|&h| h <= DARK * brightest);
-        above.is_some_and(|hit| hit.distance < CLOSE * element.area.sqrt() || is_dark && !hit.front)
+        let is_dark = h.iter().all(|&h| h <= DARK_SHARE * brightest);
+        above.is_some_and(|hit| {
+            hit.distance < MAX_COVER_DISTANCE_SHARE * element.area.sqrt() || is_dark && !hit.front
+        })
     };
     let covered: Vec<bool> = elements.par_iter().zip(irradiance).map(is_covered).collect();
     let of_element = |(number, element): (usize, &Element)| {
         let size = element.area.sqrt();
         let joins = |other: usize| {
             let sees = || covered[number] || index.sees(lifted(element), lifted(&elements[other]));
-            let is_alike = || elements[other].normal.dot(element.normal) >= SMOOTH;
+            let is_alike = || elements[other].normal.dot(element.normal) >= MIN_SMOOTH_COSINE;
             !covered[other] && (other == number || is_alike() && sees())
         };
         let known: Vec<Option<Rgb>> = element
@@ -52,7 +55,8 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
             .as_slice()
             .iter()
             .map(|corner| {
-                let around = tree.locate_within_distance(corner.to_array(), (SAME * size).powi(2));
+                let around =
+                    tree.locate_within_distance(corner.to_array(), (SAME_CORNER_SHARE * size).powi(2));
                 mean(
                     around
                         .map(|found| found.data)
@@ -68,7 +72,7 @@ pub fn corner_irradiance(elements: &[Element], index: &RayIndex, irradiance: &[R
 }
 
 fn lifted(element: &Element) -> DVec3 {
-    element.centroid + element.normal * (ABOVE * element.area.sqrt())
+    element.centroid + element.normal * (TEST_HEIGHT_SHARE * element.area.sqrt())
 }
 
 /// The mean of some values, if there are any.
@@ -139,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_below_a_crate_takes_the_light_around_and_gives_none() {
+    fn a_corner_below_a_crate_takes_the_light_around_and_gives_none() {
         let (mut elements, mut irradiance) = floor();
         // The lid of a crate over the second square, seen from below by its back.
         elements.push(square(DVec3::new(1.1, 0.5, 0.1), 0.8 * DVec3::Z, 0.8 * DVec3::X));
