@@ -7,8 +7,10 @@ use crate::equation::earlier::Older;
 use crate::equation::intruders::intruders;
 use crate::placed::Placed;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::cached::{Made, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::oven::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
+use equilux_bake::oven::cached::{NewValue, Origin, cached, cached_or_revised, foreseen};
+use equilux_bake::oven::keys::{
+    BakedKey, CORRECTED, COUPLING, RelativePlacement, placed_manifest, placements_from, sky_manifest,
+};
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
@@ -221,8 +223,8 @@ impl Coupler<'_> {
         let part = instances[instance].part;
         let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(TWINS);
         let parts = self.known();
-        let seen_by = |k: usize| seen_from(instances, &parts, k).map(|(_, seen)| seen);
-        let here: HashSet<Seen> = seen_by(instance).collect();
+        let seen_by = |k: usize| placements_from(instances, &parts, k).map(|(_, seen)| seen);
+        let here: HashSet<RelativePlacement> = seen_by(instance).collect();
         let common = |l: &usize| seen_by(*l).filter(|seen| here.contains(seen)).count();
         let twin = before.max_by_key(common)?;
         let manifest = self.manifest(twin, what);
@@ -252,8 +254,8 @@ impl Coupler<'_> {
         placed_manifest(&self.placed.instances, &self.known(), self.resolution, instance, what)
     }
 
-    fn known(&self) -> Vec<Known> {
-        let known = |part: &Baked| Known { key: part.key, senders: part.part.geometry.clusters.nodes() };
+    fn known(&self) -> Vec<BakedKey> {
+        let known = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.clusters.nodes() };
         self.placed.parts.iter().map(known).collect()
     }
 }
@@ -270,13 +272,13 @@ struct Block {
 }
 
 /// What was made: of an older block, if there was one, and of the one under a key, if it is the same column by column.
-fn made(timed: Timed, older: Option<Option<Key>>) -> Made<Rows> {
+fn made(timed: Timed, older: Option<Option<Key>>) -> NewValue<Rows> {
     match older {
-        None => Made::Whole(timed.block),
-        Some(Some(key)) if timed.is_unchanged => Made::AsUnder(key, timed.block),
+        None => NewValue::Whole(timed.block),
+        Some(Some(key)) if timed.is_unchanged => NewValue::AsUnder(key, timed.block),
         Some(_) => {
             let share = 100.0 * timed.computed as f64 / timed.block.stored().max(1) as f64;
-            Made::Revised(timed.block, format!("{share:.1} % of its form factors"))
+            NewValue::Revised(timed.block, format!("{share:.1} % of its form factors"))
         }
     }
 }

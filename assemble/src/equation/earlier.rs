@@ -3,7 +3,7 @@
 //! block up to date.
 
 use crate::placed::Placed;
-use equilux_bake::oven::keys::{Seen, seen_in};
+use equilux_bake::oven::keys::{RelativePlacement, placements_in};
 use equilux_bake::treecode::revision::{Change, Revision};
 use equilux_formats::{BakedGeometry, Geometry, Key, Lookup, Manifest, Rows, Store};
 use glam::DAffine3;
@@ -49,7 +49,7 @@ impl<'a> Older<'a> {
         if !last.is_alike(wanted) {
             return None;
         }
-        let (before, now) = (seen_in(last)?, seen_in(wanted)?);
+        let (before, now) = (placements_in(last)?, placements_in(wanted)?);
         let stays = stays(&before, &now);
         let new = (0..now.len()).filter(|n| !stays.contains(&Some(*n)));
         let gone = (0..before.len()).filter(|&b| stays[b].is_none());
@@ -87,9 +87,9 @@ impl<'a> Older<'a> {
 }
 
 /// For each instance that was there the one that is there now: the same part in the same place.
-fn stays(before: &[(usize, Seen)], now: &[(usize, Seen)]) -> Vec<Option<usize>> {
+fn stays(before: &[(usize, RelativePlacement)], now: &[(usize, RelativePlacement)]) -> Vec<Option<usize>> {
     let mut free: Vec<bool> = vec![true; now.len()];
-    let mut find = |seen: &Seen| {
+    let mut find = |seen: &RelativePlacement| {
         let found = (0..now.len()).find(|&n| free[n] && now[n].1 == *seen)?;
         free[found] = false;
         Some(found)
@@ -122,8 +122,8 @@ fn add_part(
 fn senders(
     placed: &Placed,
     instance: usize,
-    before: &[(usize, Seen)],
-    now: &[(usize, Seen)],
+    before: &[(usize, RelativePlacement)],
+    now: &[(usize, RelativePlacement)],
     stays: &[Option<usize>],
 ) -> Vec<Option<u32>> {
     let nodes_of = |k: usize| placed.world.nodes_of(k).map(|node| Some(node as u32));

@@ -7,7 +7,7 @@ use crate::elements::clusters;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Side, clip, quads_and_triangles};
 use crate::geometry::tolerance::ON_CUT;
-use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
+use equilux_formats::{Element, Face, FaceId, Geometry};
 use glam::DVec3;
 
 /// A plane across one of the coordinate axes.
@@ -133,7 +133,7 @@ fn clip_face(face: &Face, height: impl Fn(DVec3) -> f64) -> Face {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use equilux_formats::MaterialId;
+    use equilux_formats::{Corners, MaterialId};
     use proptest::prelude::*;
 
     proptest! {
