@@ -13,7 +13,7 @@ use crate::oven::keys::drop_unused;
 use crate::oven::{depfile, stamp};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
-use equilux_formats::{Store, Swept};
+use equilux_formats::{Evicted, Store};
 use indicatif::DecimalBytes;
 use options::SceneOptions;
 use program::tell;
@@ -91,7 +91,7 @@ fn work(arguments: Arguments) -> anyhow::Result<ExitCode> {
 #[serde(untagged)]
 enum Done {
     Baked(Batch),
-    Swept(Swept),
+    Evicted(Evicted),
 }
 
 fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Done> {
@@ -101,10 +101,10 @@ fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Done> {
     [&arguments.stamp, &arguments.depfile].into_iter().flatten().try_for_each(|path| stamp::check(path))?;
     let store = Store::open(&options.cache)?;
     if arguments.gc {
-        return Ok(Done::Swept(drop_unused(&files, &options.preparation(), &store)?));
+        return Ok(Done::Evicted(drop_unused(&files, &options.preparation(), &store)?));
     }
     let mut batch = bake_files(&files, &options.preparation(), &store, monitor);
-    batch.swept = options.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
+    batch.evicted = options.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     if let Some(stamp) = arguments.stamp.as_ref().filter(|_| !batch.failed()) {
         if let Some(path) = &arguments.depfile {
             depfile::write(path, stamp, &batch.sources())?;
@@ -121,7 +121,7 @@ fn print(arguments: &Arguments, done: &Done) -> Result<(), program::Unprinted> {
     program::print(&match done {
         done if arguments.options.json => serde_json::to_string(done).expect("a batch is plain data") + "\n",
         Done::Baked(batch) => batch_text(arguments, batch),
-        Done::Swept(swept) => swept_line(&arguments.options.cache, swept),
+        Done::Evicted(evicted) => eviction_line(&arguments.options.cache, evicted),
     })
 }
 
@@ -147,8 +147,8 @@ fn batch_text(arguments: &Arguments, batch: &Batch) -> String {
             }
         }
     }
-    if let Some(swept) = &batch.swept {
-        text += &swept_line(cache, swept);
+    if let Some(evicted) = &batch.evicted {
+        text += &eviction_line(cache, evicted);
     }
     text + &format!(
         "{} in {}: {} baked, {} reused; {:.2} s; cache {}\n",
@@ -161,8 +161,8 @@ fn batch_text(arguments: &Arguments, batch: &Batch) -> String {
     )
 }
 
-fn swept_line(cache: &Path, swept: &Swept) -> String {
-    let [dropped, kept] = [swept.dropped, swept.kept]
+fn eviction_line(cache: &Path, evicted: &Evicted) -> String {
+    let [dropped, kept] = [evicted.dropped, evicted.kept]
         .map(|tally| format!("{} ({})", count(tally.files, "file"), DecimalBytes(tally.bytes)));
     format!("cache {}: dropped {dropped}, kept {kept}\n", cache.display())
 }

@@ -1,13 +1,13 @@
-//! Parts by planes, as the paper makes them: a plane cuts all elements and faces into what lies on either side.
+//! Divides a geometry into parts by planes, as in the paper: a plane cuts all elements and faces.
 //!
-//! The cells are convex, so nothing foreign can stand between two points of one of them: a cell's own block of form
-//! factors is exact inside the whole. Debelov & Sevastyanov, §2.
+//! The cells are convex, so no element of another cell can lie between two points of one cell: the self block of a cell is
+//! exact within the whole. Debelov & Sevastyanov, §2.
 
 use crate::elements::clusters;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::polygon::{Side, clip};
+use crate::geometry::polygon::{Side, clip, quads_and_triangles};
 use crate::geometry::tolerance::ON_CUT;
-use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
+use equilux_formats::{Element, Face, FaceId, Geometry};
 use glam::DVec3;
 
 /// A plane across one of the coordinate axes.
@@ -107,7 +107,7 @@ fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f
             match clip(corners, &height) {
                 Side::All => vec![element.corners],
                 Side::None => vec![],
-                Side::Piece(piece) => split_into_corners(&piece),
+                Side::Piece(piece) => quads_and_triangles(&piece),
             }
         };
         for piece in pieces {
@@ -130,20 +130,10 @@ fn clip_face(face: &Face, height: impl Fn(DVec3) -> f64) -> Face {
     }
 }
 
-/// Three to five corners as elements of at most four.
-fn split_into_corners(piece: &[DVec3]) -> Vec<Corners> {
-    match *piece {
-        [a, b, c] => vec![Corners::triangle([a, b, c])],
-        [a, b, c, d] => vec![Corners::quad([a, b, c, d])],
-        [a, b, c, d, e] => vec![Corners::quad([a, b, c, d]), Corners::triangle([a, d, e])],
-        _ => unreachable!("a plane cuts at most one corner off a quad, leaving five, not {}", piece.len()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use equilux_formats::MaterialId;
+    use equilux_formats::{Corners, MaterialId};
     use proptest::prelude::*;
 
     proptest! {

@@ -8,7 +8,7 @@
 
 use super::system::LocalSystem;
 use crate::geometry::aabb::Aabb;
-use equilux_formats::{Answers, Element, Geometry, Rgb};
+use equilux_formats::{BoundaryResponses, Element, Geometry, Rgb};
 
 /// What may be left of a source when its answer is taken: the answers guide the exchange, they are not its result.
 const ROUGH: f64 = 1e-2;
@@ -20,13 +20,13 @@ const NEW: f64 = 1e-3;
 const CLOSED: f64 = 1e-12;
 
 /// A light, as the irradiance of an element to which all is open.
-type Light = Box<dyn Fn(&Element) -> f64>;
+type OutsideLight = Box<dyn Fn(&Element) -> f64>;
 
 /// The answers of a part with this system and geometry; none if nothing from outside can arrive, or none of it stays.
-pub fn answers(system: &LocalSystem, geometry: &Geometry) -> Answers {
+pub fn boundary_responses(system: &LocalSystem, geometry: &Geometry) -> BoundaryResponses {
     let areas: Vec<f64> = geometry.elements.iter().map(|element| element.area).collect();
     let open: Vec<f64> = (0..areas.len()).map(|i| open(1.0 - system.block.row_sum(i))).collect();
-    let mut answers = Answers::default();
+    let mut answers = BoundaryResponses::default();
     for (number, light) in lights(&geometry.elements).into_iter().enumerate() {
         let reflected =
             |i: usize| -> Rgb { system.reflectance[i] * (open[i] * light(&geometry.elements[i])) };
@@ -51,10 +51,10 @@ fn open(share: f64) -> f64 {
 }
 
 /// The seven lights.
-fn lights(elements: &[Element]) -> Vec<Light> {
+fn lights(elements: &[Element]) -> Vec<OutsideLight> {
     let around = Aabb::around(elements.iter().map(|element| element.centroid));
     let (centre, extent) = (around.centre(), around.size().max_element().max(f64::MIN_POSITIVE) / 2.0);
-    let mut lights: Vec<Light> = vec![Box::new(|_| 1.0)];
+    let mut lights: Vec<OutsideLight> = vec![Box::new(|_| 1.0)];
     for axis in 0..3 {
         lights.push(Box::new(move |element| (element.centroid[axis] - centre[axis]) / extent));
         lights.push(Box::new(move |element| element.normal[axis]));

@@ -4,6 +4,7 @@
 //! origin and is given by its normal alone.
 
 use super::tolerance::{CUT_ROUNDING, IN_PLANE, STRAIGHT};
+use equilux_formats::Corners;
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
@@ -73,6 +74,22 @@ fn is_edge(polygon: &[DVec3]) -> bool {
         from = to;
     }
     double_area.length_squared() <= CUT_ROUNDING * CUT_ROUNDING * longest2 * reach2
+}
+
+/// A planar convex polygon as quads, and a triangle where corners are left. A polygon that is higher than its corners are
+/// rounded by can have pieces that are not, such as the tip of a needle; these are dropped, as by [`clip`].
+pub(crate) fn quads_and_triangles(polygon: &[DVec3]) -> Vec<Corners> {
+    let mut pieces = Vec::new();
+    let mut next = 1;
+    while next + 2 < polygon.len() {
+        pieces.push(Corners::quad([polygon[0], polygon[next], polygon[next + 1], polygon[next + 2]]));
+        next += 2;
+    }
+    if next + 1 < polygon.len() {
+        pieces.push(Corners::triangle([polygon[0], polygon[next], polygon[next + 1]]));
+    }
+    pieces.retain(|piece| !is_edge(piece.as_slice()));
+    pieces
 }
 
 /// The pyramid of directions that a convex occluder hides from the origin.

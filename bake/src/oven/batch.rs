@@ -5,7 +5,7 @@ use crate::monitor::Monitor;
 use crate::oven::prepare::PreparedPart;
 use crate::oven::prepare::{Preparation, prepare};
 use crate::oven::{Baked, Oven};
-use equilux_formats::{Error, Problem, Result, RowSumDefect, Store, Swept, unless_stopped};
+use equilux_formats::{Error, Evicted, Problem, Result, RowSumDefect, Store, unless_stopped};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,8 @@ pub struct Batch {
     /// Wall time.
     pub seconds: f64,
     /// What was dropped from the cache to keep within its limit, if it has one.
-    pub swept: Option<Swept>,
+    #[serde(rename = "swept")]
+    pub evicted: Option<Evicted>,
 }
 
 /// What became of one file.
@@ -131,7 +132,7 @@ pub fn bake_files(files: &[PathBuf], wanted: &Preparation, store: &Store, monito
         }
         outcomes.push(outcome);
     }
-    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64(), swept: None }
+    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64(), evicted: None }
 }
 
 fn bake_file(

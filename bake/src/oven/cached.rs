@@ -54,7 +54,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// How a value was made that the cache did not have.
 #[derive(Debug)]
-pub enum Made<T> {
+pub enum NewValue<T> {
     /// From the start.
     Whole(T),
     /// By bringing an older one up to date; how much of it, for a person.
@@ -73,7 +73,7 @@ pub fn cached<T: Stored>(
     monitor: &Monitor,
     compute: impl FnOnce() -> Result<T>,
 ) -> Result<(T, Origin)> {
-    cached_or_revised(store, name, manifest, monitor, || compute().map(Made::Whole))
+    cached_or_revised(store, name, manifest, monitor, || compute().map(NewValue::Whole))
 }
 
 /// The same where `make` may know an older value to start from.
@@ -82,7 +82,7 @@ pub fn cached_or_revised<T: Stored>(
     name: &str,
     manifest: &Manifest,
     monitor: &Monitor,
-    make: impl FnOnce() -> Result<Made<T>>,
+    make: impl FnOnce() -> Result<NewValue<T>>,
 ) -> Result<(T, Origin)> {
     let mut found = look_up(store, name, manifest);
     let mut _turn = None;
@@ -95,13 +95,13 @@ pub fn cached_or_revised<T: Stored>(
         Ok(value) => (value, Origin::Reused),
         Err(reason) => {
             let made = make()?;
-            if let Made::Whole(value) | Made::Revised(value, _) = &made {
+            if let NewValue::Whole(value) | NewValue::Revised(value, _) = &made {
                 store.save(manifest, value)?;
             }
             match made {
-                Made::Whole(value) => (value, Origin::Computed(reason)),
-                Made::Revised(value, how) => (value, Origin::Computed(format!("{reason}; {how}"))),
-                Made::AsUnder(key, value) => {
+                NewValue::Whole(value) => (value, Origin::Computed(reason)),
+                NewValue::Revised(value, how) => (value, Origin::Computed(format!("{reason}; {how}"))),
+                NewValue::AsUnder(key, value) => {
                     store.save_alias(manifest, &key)?;
                     (value, Origin::Unchanged(reason))
                 }

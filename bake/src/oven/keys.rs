@@ -11,7 +11,7 @@ use crate::gltf_import::import_scene;
 use crate::oven::prepare::{Preparation, Prepared, prepare};
 use crate::oven::{KERNEL_VERSION, geometry_manifest, light_manifest};
 use crate::treecode::Resolution;
-use equilux_formats::{Instance, Key, Manifest, Result, Store, Swept};
+use equilux_formats::{Evicted, Instance, Key, Manifest, Result, Store};
 use glam::DAffine3;
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -26,7 +26,7 @@ pub const SKY_CELLS: usize = 12;
 
 /// Drop from the cache whatever none of the scenes in `files` asks for. Fails and drops nothing if one of them cannot be
 /// read, for then it is not known what it needs.
-pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Result<Swept> {
+pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Result<Evicted> {
     let mut keys = HashSet::new();
     for file in files {
         keys.extend(keys_of(&prepare(&import_scene(file)?, wanted)?, wanted.resolution, store));
@@ -43,10 +43,10 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
         let light = light_manifest(key.into(), &part.optics, part.solver);
         keys.extend([key, light.key()]);
     }
-    let parts: Vec<Known> = part_keys
+    let parts: Vec<BakedKey> = part_keys
         .iter()
         .zip(&scene.parts)
-        .map(|(&key, part)| Known { key, senders: part.geometry.clusters.nodes() })
+        .map(|(&key, part)| BakedKey { key, senders: part.geometry.clusters.nodes() })
         .collect();
     for number in 0..scene.instances.len() {
         let key = |what| placed_manifest(&scene.instances, &parts, resolution, number, what).key();
@@ -64,7 +64,7 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
 
 /// What manifests of blocks tell of a part.
 #[derive(Debug, Clone, Copy)]
-pub struct Known {
+pub struct BakedKey {
     /// The key of its form factors.
     pub key: Key,
     /// The number of its senders, elements and clusters.
@@ -74,7 +74,7 @@ pub struct Known {
 /// Another instance as one sees it: what a manifest of a block tells of it, so that of an older block it is known what it
 /// was made among.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Seen {
+pub struct RelativePlacement {
     /// Its part.
     pub part: Key,
     /// The number of its senders.
@@ -83,9 +83,9 @@ pub struct Seen {
     placement: RoundedPlacement,
 }
 
-impl Seen {
+impl RelativePlacement {
     /// A part at a place.
-    pub fn new(part: Known, placement: DAffine3) -> Self {
+    pub fn new(part: BakedKey, placement: DAffine3) -> Self {
         Self { part: part.key, senders: part.senders, placement: placement.into() }
     }
 
@@ -95,14 +95,14 @@ impl Seen {
     }
 }
 
-impl std::fmt::Display for Seen {
+impl std::fmt::Display for RelativePlacement {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} {} {}", self.part, self.senders, self.placement.exponent)?;
         self.placement.steps.iter().try_for_each(|step| write!(f, " {step}"))
     }
 }
 
-impl std::str::FromStr for Seen {
+impl std::str::FromStr for RelativePlacement {
     type Err = ();
 
     /// Reads what is displayed.
@@ -124,7 +124,7 @@ impl std::str::FromStr for Seen {
 /// seen from this one. `parts` tells of the parts' own form factors.
 pub fn placed_manifest(
     instances: &[Instance],
-    parts: &[Known],
+    parts: &[BakedKey],
     resolution: Resolution,
     instance: usize,
     what: &str,
@@ -134,7 +134,7 @@ pub fn placed_manifest(
         .setting("kernel", KERNEL_VERSION)
         .setting("resolution", resolution)
         .digest("the part", parts[instances[instance].part.index()].key);
-    for (number, seen) in seen_from(instances, parts, instance) {
+    for (number, seen) in placements_from(instances, parts, instance) {
         manifest = manifest.detail(format!("instance {number} ({})", instances[number].name), seen);
     }
     manifest
@@ -144,29 +144,31 @@ pub fn placed_manifest(
 /// with it.
 pub fn sky_manifest(
     instances: &[Instance],
-    parts: &[Known],
+    parts: &[BakedKey],
     resolution: Resolution,
     instance: usize,
 ) -> Manifest {
     let own = &instances[instance];
     placed_manifest(instances, parts, resolution, instance, "sky")
         .setting("sky's cells", SKY_CELLS)
-        .setting("placement", Seen::new(parts[own.part.index()], own.placement))
+        .setting("placement", RelativePlacement::new(parts[own.part.index()], own.placement))
 }
 
 /// Every other instance by its number, as one instance sees it.
-pub fn seen_from<'a>(
+pub fn placements_from<'a>(
     instances: &'a [Instance],
-    parts: &'a [Known],
+    parts: &'a [BakedKey],
     instance: usize,
-) -> impl Iterator<Item = (usize, Seen)> + 'a {
+) -> impl Iterator<Item = (usize, RelativePlacement)> + 'a {
     let inverse = instances[instance].placement.inverse();
     let others = instances.iter().enumerate().filter(move |&(n, _)| n != instance);
-    others.map(move |(n, other)| (n, Seen::new(parts[other.part.index()], inverse * other.placement)))
+    others.map(move |(n, other)| {
+        (n, RelativePlacement::new(parts[other.part.index()], inverse * other.placement))
+    })
 }
 
 /// The other instances that a manifest of a block tells of, by their numbers; none if it is not such a manifest.
-pub fn seen_in(manifest: &Manifest) -> Option<Vec<(usize, Seen)>> {
+pub fn placements_in(manifest: &Manifest) -> Option<Vec<(usize, RelativePlacement)>> {
     let read = |(label, text): (&str, &str)| {
         let number = label.strip_prefix("instance ")?.split(' ').next()?.parse().ok()?;
         Some((number, text.parse().ok()?))

@@ -9,7 +9,7 @@ pub mod stamp;
 
 use crate::elements::{ElementSize, repainted};
 use crate::equilibrium::endless::endless_in_block;
-use crate::equilibrium::outside::answers;
+use crate::equilibrium::outside::boundary_responses;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
 use crate::treecode::{Request, Resolution, block};
@@ -202,7 +202,7 @@ pub fn local_equilibrium(
     let factors = factorise(block, clusters, &optics.reflectance, solver);
     let system = LocalSystem::new(block, clusters, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
-    let answers = answers(&system, geometry);
+    let answers = boundary_responses(&system, geometry);
     LocalEquilibrium { solver, radiosity, factors, answers }
 }
 

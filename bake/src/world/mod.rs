@@ -21,10 +21,10 @@ pub struct World {
     pub faces: Vec<Face>,
     planes: Planes,
     /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<Sender>,
     /// The faces and solids by place.
     pub occluders: Occluders,
-    instances: Vec<Placed>,
+    instances: Vec<InstanceRanges>,
     /// The cluster around every node; its own number for a root.
     parents: Vec<u32>,
 }
@@ -39,7 +39,7 @@ struct Planes {
 
 /// Where an instance's things begin and end.
 #[derive(Debug, Clone, PartialEq)]
-struct Placed {
+struct InstanceRanges {
     elements: Range<usize>,
     nodes: Range<usize>,
     root: Option<usize>,
@@ -47,7 +47,7 @@ struct Placed {
 
 /// An element or cluster as a sender.
 #[derive(Debug, Clone)]
-pub struct Node {
+pub struct Sender {
     /// The box around it.
     pub bounds: Aabb,
     /// Area, m².
@@ -55,14 +55,14 @@ pub struct Node {
     /// What lies inside a cluster.
     pub children: Option<[u32; 2]>,
     /// The one side of the one face it lies in, if it does.
-    pub side: Option<Side>,
+    pub side: Option<FaceSide>,
     /// Its outline, if it is a planar convex polygon; elements always are. Empty if not.
     pub polygon: Polygon,
 }
 
 /// One side of a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct FaceSide {
     /// The face.
     pub face: FaceId,
     /// Unit normal of this side.
@@ -71,7 +71,7 @@ pub struct Side {
     pub material: MaterialId,
 }
 
-impl Side {
+impl FaceSide {
     fn is_as(&self, other: Self) -> bool {
         self.face == other.face && self.material == other.material && self.normal.dot(other.normal) > 0.0
     }
@@ -88,8 +88,8 @@ impl World {
             faces.extend(geometry.faces.iter().map(|face| place_face(face, placement)));
             in_part.extend(planes::group(&geometry.faces));
             instance.resize(faces.len(), instances.len() as u32);
-            add_nodes(&geometry.clusters, &elements[first_element..], &mut nodes);
-            instances.push(Placed {
+            add_senders(&geometry.clusters, &elements[first_element..], &mut nodes);
+            instances.push(InstanceRanges {
                 elements: first_element..elements.len(),
                 nodes: first_node..nodes.len(),
                 root: geometry.clusters.root().map(|root| first_node + root),
@@ -105,8 +105,8 @@ impl World {
     pub fn add_senders(&mut self, elements: &[Element], clusters: &ClusterTree) -> usize {
         let (first_element, first_node) = (self.elements.len(), self.nodes.len());
         self.elements.extend_from_slice(elements);
-        add_nodes(clusters, elements, &mut self.nodes);
-        self.instances.push(Placed {
+        add_senders(clusters, elements, &mut self.nodes);
+        self.instances.push(InstanceRanges {
             elements: first_element..self.elements.len(),
             nodes: first_node..self.nodes.len(),
             root: clusters.root().map(|root| first_node + root),
@@ -189,7 +189,7 @@ impl World {
     }
 }
 
-fn parents(nodes: &[Node]) -> Vec<u32> {
+fn parents(nodes: &[Sender]) -> Vec<u32> {
     let mut parents: Vec<u32> = (0..nodes.len() as u32).collect();
     for (number, node) in nodes.iter().enumerate() {
         node.children.iter().flatten().for_each(|&child| parents[child as usize] = number as u32);
@@ -221,11 +221,11 @@ fn place_face(face: &Face, placement: DAffine3) -> Face {
 }
 
 /// Append the nodes of one instance, whose placed elements are given.
-fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
+fn add_senders(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Sender>) {
     let base = nodes.len();
-    nodes.extend(elements.iter().map(element_node));
+    nodes.extend(elements.iter().map(element_sender));
     // Clusters come before what they hold, so the last is complete first.
-    let mut clusters: Vec<Node> = Vec::with_capacity(tree.nodes() - elements.len());
+    let mut clusters: Vec<Sender> = Vec::with_capacity(tree.nodes() - elements.len());
     let count = tree.nodes();
     for node in (elements.len()..count).rev() {
         let pair = tree.children_of(node).expect("a cluster has children");
@@ -234,30 +234,30 @@ fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
             if local < elements.len() { &nodes[base + local] } else { &clusters[count - 1 - local] }
         };
         let inner = [child(pair[0]), child(pair[1])];
-        clusters.push(cluster_node(inner, pair.map(|local| base as u32 + local)));
+        clusters.push(cluster_sender(inner, pair.map(|local| base as u32 + local)));
     }
     clusters.reverse();
     nodes.extend(clusters);
 }
 
-fn element_node(element: &Element) -> Node {
+fn element_sender(element: &Element) -> Sender {
     let corners = element.corners.as_slice();
-    Node {
+    Sender {
         bounds: Aabb::around(corners),
         area: element.area,
         children: None,
-        side: Some(Side { face: element.face, normal: element.normal, material: element.material }),
+        side: Some(FaceSide { face: element.face, normal: element.normal, material: element.material }),
         polygon: corners.iter().copied().collect(),
     }
 }
 
-fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
+fn cluster_sender([left, right]: [&Sender; 2], children: [u32; 2]) -> Sender {
     let side = match (left.side, right.side) {
         (Some(l), Some(r)) if l.is_as(r) => Some(l),
         _ => None,
     };
     let polygon = side.map_or_else(Polygon::new, |side| union(left, right, side.normal));
-    Node {
+    Sender {
         bounds: left.bounds.union(right.bounds),
         area: left.area + right.area,
         children: Some(children),
@@ -267,7 +267,7 @@ fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
 }
 
 /// The union of two polygons in one plane if it is convex, else nothing: their convex hull, if it has their area.
-fn union(left: &Node, right: &Node, normal: DVec3) -> Polygon {
+fn union(left: &Sender, right: &Sender, normal: DVec3) -> Polygon {
     if left.polygon.is_empty() || right.polygon.is_empty() {
         return Polygon::new();
     }
