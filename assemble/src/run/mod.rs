@@ -44,13 +44,14 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let (scene, prepared) = opened(job)?;
     let atlas = requests.lightmaps.map(|options| Atlas::new(&scene, options.texel_size)).transpose()?;
     let (places, against) = job.tables(scene.origin)?;
+    let environment = settings.environment()?;
     let store = Store::open(&settings.cache)?;
     let element_size = prepared.element_size.to_string();
     let has_clusters = settings.preparation.resolution.opening > 0.0;
     let places = places.as_deref();
     let elements = prepared.elements();
     monitor.expect(expected_work(requests, elements, has_clusters, atlas.as_ref(), places));
-    let solved = solve_prepared(&scene, prepared, settings, &store, monitor, observer)?;
+    let solved = solve_prepared(&scene, prepared, &environment, settings, &store, monitor, observer)?;
     let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let (equation, outcome) = (&solved.equation, &solved.outcome);
     let (placed, systems) = (&equation.placed, equation.systems());
