@@ -34,25 +34,25 @@ struct Arguments {
     inputs: Vec<PathBuf>,
     #[command(flatten)]
     options: SceneOptions,
-    /// Say in a sentence for every part why it was or was not baked
+    /// Print for every part why it was or was not baked
     #[arg(long)]
     explain: bool,
-    /// Touch this file when everything is baked, for a build tool to watch
+    /// Touch this file when everything is baked, for build tools
     #[arg(long, value_name = "FILE")]
     stamp: Option<PathBuf>,
-    /// Write for Make, Ninja or CMake which files were read; the target in it is the stamp
+    /// Write the files that were read as dependencies of the stamp, for Make, Ninja or CMake
     #[arg(long, value_name = "FILE", requires = "stamp")]
     depfile: Option<PathBuf>,
-    /// Bake nothing; drop from the cache what these scenes, baked or assembled with these options, do not use. Scenes
-    /// with other options lose theirs
+    /// Bake nothing; remove from the cache what these scenes, with these options, do not use. Results for other scenes
+    /// or options are removed too
     #[arg(long, conflicts_with_all = ["explain", "stamp", "cache_limit"])]
     gc: bool,
 }
 
-/// What to do other than bake.
+/// Subcommands.
 #[derive(Subcommand)]
 enum Task {
-    /// Print what makes a shell complete this program's options
+    /// Print a shell completion script
     Completions {
         /// The shell
         shell: Shell,
@@ -86,7 +86,7 @@ fn work(arguments: Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(matches!(&done, Done::Baked(batch) if batch.failed()))))
 }
 
-/// What was asked for and done.
+/// The result of a run.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Done {

@@ -1,6 +1,6 @@
-//! Elements → their hierarchy. First the elements of each face side are halved along the longer side of the face until
-//! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
-//! face sides themselves are halved by place.
+//! Builds the hierarchy of a part's elements. The elements of each face side are halved along the longer side of the
+//! face until single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles.
+//! The face sides themselves are halved by position.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::tolerance::SAME_LINE;
@@ -9,17 +9,17 @@ use equilux_formats::{ClusterTree, Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// An element with something before it nearer than this share of its face's extent is covered, and clusters with others
-/// that are.
+/// An element counts as covered if an obstacle in front of it is nearer than this share of its face's extent. Covered
+/// elements share clusters only with covered elements.
 const COVERED: f64 = 0.1;
 
-/// The geometry of these elements and faces, elements put into the order of their hierarchy.
+/// The geometry of these elements and faces; elements are sorted into the order of their hierarchy.
 pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
     let (order, clusters) = hierarchy(&elements);
     Geometry { elements: order.iter().map(|&i| elements[i]).collect(), faces, clusters }
 }
 
-/// The hierarchy of these elements, and which of them comes where in it.
+/// The order of these elements in their hierarchy, as indices into `elements`, and the hierarchy.
 pub fn hierarchy(elements: &[Element]) -> (Vec<usize>, ClusterTree) {
     let mut builder = Builder { elements, order: vec![], clusters: vec![] };
     let mut sides = face_sides(elements);
@@ -57,7 +57,7 @@ fn face_sides(elements: &[Element]) -> Vec<SideElements> {
         let near = COVERED * boxes[&e.face.0].diagonal();
         index.first_hit(e.centroid, e.normal).is_some_and(|hit| hit.distance < near)
     };
-    // What shares a face need not share its light: a lamp let into a ceiling, the floor beneath a crate.
+    // Elements of one face can differ in light: a lamp set into a ceiling, the floor beneath a crate.
     let key = |e: &Element| (e.face, fronts[&e.face.0].dot(e.normal) < 0.0, e.material, is_covered(e));
     let keys: Vec<_> = elements.iter().map(key).collect();
     let mut order: Vec<usize> = (0..elements.len()).collect();
@@ -118,7 +118,7 @@ impl Builder<'_> {
         right: impl FnOnce(&mut Self) -> Branch,
     ) -> Branch {
         let number = self.clusters.len();
-        // The number is taken before the halves take theirs; the halves themselves are known only afterwards.
+        // Reserve the number before the halves reserve theirs; the halves are filled in afterwards.
         self.clusters.push([Branch::Cluster(0); 2]);
         let pair = [left(self), right(self)];
         self.clusters[number] = pair;
@@ -150,7 +150,7 @@ fn longest(axes: &[DVec3], places: impl Iterator<Item = DVec3> + Clone) -> DVec3
     best.0
 }
 
-/// Where to cut the sorted places: the grid line nearest to the middle, or the middle itself.
+/// Where to divide the sorted positions: at the grid line nearest to the middle, or else in the middle.
 fn grid_line(places: &[f64]) -> usize {
     let (count, middle) = (places.len(), places.len() / 2);
     let step = SAME_LINE * (places[count - 1] - places[0]);

@@ -1,4 +1,4 @@
-//! Elements, clusters and faces of one or many instances in one frame: what form-factor rows are computed in.
+//! Elements, clusters and faces of one or more instances in one coordinate system: the input of form-factor computations.
 
 pub mod occluders;
 
@@ -12,17 +12,17 @@ use glam::{DAffine3, DVec3};
 use occluders::Occluders;
 use std::ops::Range;
 
-/// Placed geometry with what blocks light in it.
+/// Placed geometry and its occluders.
 #[derive(Debug)]
 pub struct World {
     /// All elements, instance after instance; `face` counts through [`World::faces`].
     pub elements: Vec<Element>,
-    /// All faces: everything that blocks light.
+    /// All faces, which block light.
     pub faces: Vec<Face>,
     planes: Planes,
     /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
     pub nodes: Vec<Sender>,
-    /// The faces and solids by place.
+    /// The occluders, in a spatial index.
     pub occluders: Occluders,
     instances: Vec<InstanceRanges>,
     /// The cluster around every node; its own number for a root.
@@ -37,7 +37,7 @@ struct Planes {
     instance: Vec<u32>,
 }
 
-/// Where an instance's things begin and end.
+/// The ranges of an instance's elements and nodes.
 #[derive(Debug, Clone, PartialEq)]
 struct InstanceRanges {
     elements: Range<usize>,
@@ -52,9 +52,9 @@ pub struct Sender {
     pub bounds: Aabb,
     /// Area, m².
     pub area: f64,
-    /// What lies inside a cluster.
+    /// The children of a cluster; none for an element.
     pub children: Option<[u32; 2]>,
-    /// The one side of the one face it lies in, if it does.
+    /// The side of a face that all its elements lie on; none if they lie on several.
     pub side: Option<FaceSide>,
     /// Its outline, if it is a planar convex polygon; elements always are. Empty if not.
     pub polygon: Polygon,
@@ -67,7 +67,7 @@ pub struct FaceSide {
     pub face: FaceId,
     /// Unit normal of this side.
     pub normal: DVec3,
-    /// The material of all that is meant: surfaces of different light are never one sender.
+    /// The material of its elements: surfaces of different materials are never one sender.
     pub material: MaterialId,
 }
 
@@ -78,7 +78,7 @@ impl FaceSide {
 }
 
 impl World {
-    /// The world of geometries, each moved by its placement (a similarity).
+    /// Builds the world of these geometries, each with its placement (a similarity).
     pub fn new<'a>(placed: impl IntoIterator<Item = (&'a Geometry, DAffine3)>) -> Self {
         let (mut elements, mut faces, mut nodes, mut instances) = (vec![], vec![], vec![], vec![]);
         let (mut in_part, mut instance) = (vec![], vec![]);
@@ -101,7 +101,7 @@ impl World {
         Self { elements, faces, planes, nodes, occluders, instances, parents }
     }
 
-    /// Add senders that hide nothing: elements that lie in faces of the world. Returns their instance.
+    /// Adds senders that do not occlude: elements that lie in faces of the world. Returns their instance.
     pub fn add_senders(&mut self, elements: &[Element], clusters: &ClusterTree) -> usize {
         let (first_element, first_node) = (self.elements.len(), self.nodes.len());
         self.elements.extend_from_slice(elements);
@@ -115,7 +115,7 @@ impl World {
         self.instances.len() - 1
     }
 
-    /// Add geometry that stands behind everything and hides nothing, such as a sky. Returns its instance.
+    /// Adds geometry behind everything else that does not occlude, such as a sky. Returns its instance.
     pub fn add_far(&mut self, geometry: &Geometry) -> usize {
         let first = self.faces.len() as u32;
         self.faces.extend_from_slice(&geometry.faces);
@@ -131,8 +131,8 @@ impl World {
         self.add_senders(&elements, &geometry.clusters)
     }
 
-    /// Whether two faces lie in one plane, so that neither lights or hides anything of the other. Within an instance
-    /// the part's own coordinates decide, so that every scene decides as the part alone does.
+    /// Whether two faces lie in one plane, so that neither lights nor hides the other. Within an instance this is
+    /// decided in the part's own coordinates, so that it is the same in every scene.
     pub fn coplanar(&self, a: FaceId, b: FaceId) -> bool {
         let Planes { in_scene, in_part, instance } = &self.planes;
         let (a, b) = (a.index(), b.index());
@@ -197,7 +197,7 @@ fn parents(nodes: &[Sender]) -> Vec<u32> {
     parents
 }
 
-/// A mirrored placement turns the order of the corners around, so that they stay counter-clockwise from the front.
+/// A mirrored placement reverses the order of the corners, so that they stay counter-clockwise from the front.
 fn place_element(element: &Element, placement: DAffine3, first_face: u32) -> Element {
     if placement == DAffine3::IDENTITY {
         return Element { face: FaceId(element.face.0 + first_face), ..*element };
@@ -220,11 +220,11 @@ fn place_face(face: &Face, placement: DAffine3) -> Face {
     Face::new(corners)
 }
 
-/// Append the nodes of one instance, whose placed elements are given.
+/// Appends the senders of one instance with these placed elements.
 fn add_senders(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Sender>) {
     let base = nodes.len();
     nodes.extend(elements.iter().map(element_sender));
-    // Clusters come before what they hold, so the last is complete first.
+    // Clusters precede their children, so this loop runs backwards.
     let mut clusters: Vec<Sender> = Vec::with_capacity(tree.nodes() - elements.len());
     let count = tree.nodes();
     for node in (elements.len()..count).rev() {
