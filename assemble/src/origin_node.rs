@@ -1,9 +1,9 @@
-//! The node of a glTF file that moves a scene back to where its own file has it.
+//! The glTF node that moves a scene from local coordinates back to those of its file.
 
 use glam::DVec3;
 use serde_json::{Value, json};
 
-/// Puts all `nodes` under one that moves them to `origin`, where that is elsewhere, and returns the roots of the scene.
+/// Put all `nodes` under a common parent at `origin`, unless that is zero, and return the root nodes of the scene.
 pub fn under_origin(nodes: &mut Vec<Value>, origin: DVec3) -> Vec<usize> {
     let all: Vec<usize> = (0..nodes.len()).collect();
     if origin == DVec3::ZERO {

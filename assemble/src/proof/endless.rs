@@ -1,13 +1,13 @@
-//! Light without end: a closed group of elements that reflect everything and emit has no equilibrium.
+//! Refuses scenes without equilibrium: a closed group of elements that reflects all light and emits.
 
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
-use crate::proof::enclosure::{OFF, is_compressed};
+use crate::proof::enclosure::{MAX_ROW_ERROR, is_compressed};
 use equilux_bake::equilibrium::endless::endless_light;
 use equilux_formats::{Error, Optics, Result};
 use std::path::Path;
 
-/// Refuse a scene in which some group of elements keeps all its light for ever and gets more.
+/// Fail if some group of elements keeps all its light and emits.
 pub fn refuse_endless_light(
     placed: &PlacedParts,
     systems: &[InstanceSystem],
@@ -19,8 +19,8 @@ pub fn refuse_endless_light(
         .enumerate()
         .flat_map(|(k, n)| (0..n.self_block.receivers()).map(move |i| (k, i)))
         .collect();
-    // What a row may lack counts as staying: clusters must not open a closed scene.
-    let lack = is_compressed(systems).then_some(OFF);
+    // Missing form factors count as light that stays, so that clusters do not open a closed scene.
+    let lack = is_compressed(systems).then_some(MAX_ROW_ERROR);
     let rows = |element: usize| {
         let (k, i) = place[element];
         let first = placed.world.nodes_of(k).start;
@@ -36,7 +36,7 @@ pub fn refuse_endless_light(
     Err(Error::new(
         file,
         format!(
-            "around `{}` the scene is closed, reflects everything and emits: its light grows without end",
+            "no equilibrium exists: around `{}` the scene is closed, reflects all light and emits, so its light grows without end",
             instance.name
         ),
         "a reflectance below 1 or an opening somewhere",

@@ -1,5 +1,5 @@
-//! What an answer that was found with clusters misses where rows are exact: r_i = E_i + ρ_i Σ_j F_ij B_j − B_i, every j an
-//! element. A few rows tell how large r is, all of them bound the error.
+//! Residuals of a solution with clusters where rows are exact: r_i = E_i + ρ_i Σ_j F_ij B_j − B_i, where every j is
+//! an element. A sample of rows estimates the size of r; all rows together bound the error.
 
 use super::sample::ReceiverCluster;
 use crate::exchange::system::InstanceSystem;
@@ -10,25 +10,25 @@ use equilux_bake::treecode::{Audience, EXACT, Request, block};
 use equilux_formats::{Result, Rgb, Rows};
 use std::time::Duration;
 
-/// An exact row takes about as much time as this many rows with clusters.
+/// Cost of an exact row, in rows with clusters.
 pub const ROWS_PER_EXACT_ROW: f64 = 4.0;
 
-/// At most about so many exact rows are in memory at a time.
-const AT_ONCE: usize = 1024;
+/// Approximate number of exact rows in memory at a time.
+const BATCH_ROWS: usize = 1024;
 
-/// The residuals of some receivers.
+/// Residuals of chosen receivers.
 #[derive(Debug)]
 pub struct Residuals {
-    /// W/m², one vector a cluster of receivers, in the order in which they were chosen.
+    /// W/m², one vector for each receiver cluster, in the order of the clusters.
     pub values: Vec<Vec<Rgb>>,
     /// Number of form factors computed.
     pub form_factors: usize,
-    /// Time spent on them, summed over threads.
+    /// Time spent on form factors, summed over threads.
     pub time: Duration,
 }
 
-/// Compute exact rows for the chosen receivers and what `radiosity` (one vector an instance) misses there. Fails if
-/// the monitor was stopped.
+/// Compute exact rows for the chosen receivers, and the residuals of `radiosity` (W/m², one vector for each instance)
+/// in them. Fails if the monitor was stopped.
 pub fn residuals(
     placed: &PlacedParts,
     systems: &[InstanceSystem],
@@ -57,14 +57,14 @@ pub fn residuals(
     Ok(residuals)
 }
 
-/// Runs of clusters of one instance, few enough rows to be kept at once.
+/// Batches of consecutive clusters of one instance, with few enough rows to be stored at the same time.
 fn batches(chosen: &[ReceiverCluster]) -> Vec<&[ReceiverCluster]> {
     let mut batches = Vec::new();
     for own in chosen.chunk_by(|a, b| a.instance == b.instance) {
         let mut rows = 0;
         let together = own.chunk_by(|a, _| {
             rows += a.receivers.len();
-            let fits = rows < AT_ONCE;
+            let fits = rows < BATCH_ROWS;
             if !fits {
                 rows = 0;
             }
@@ -83,7 +83,7 @@ fn exact_rows(
 ) -> Result<(Rows, Duration)> {
     let world = &placed.world;
     let instance = clusters[0].instance;
-    // For a receiver that sees everything already nothing is searched.
+    // Rows that already sum to 1 are not searched.
     let mut seen = vec![1.0; world.elements_of(instance).len()];
     clusters.iter().for_each(|cluster| seen[cluster.receivers.clone()].fill(0.0));
     let everyone: Vec<usize> = (0..placed.instances.len()).collect();

@@ -1,6 +1,6 @@
-//! What is known about the error of an answer whose form factors stand for clusters: radiosity varies within a cluster,
-//! and nothing in the exchange notices. In go the form factors as they are kept and the answer; out comes a proved bound
-//! for every element, and what exact rows of some receivers say.
+//! The error of a solution whose form factors represent clusters: radiosity varies within a cluster, which the
+//! exchange cannot detect. Input: the stored form factors and the solution. Output: a proved bound for every element,
+//! and residuals measured in exact rows.
 
 pub mod enclosure;
 pub mod endless;
@@ -19,44 +19,47 @@ use exact_rows::{Residuals, residuals};
 use sample::{ExactRows, ReceiverCluster, choose};
 use std::time::Duration;
 
-/// What is proved and what was measured. The exact answer is that of the matrix in which every entry is for one element.
+/// Proved bounds and measured residuals. The exact solution is that of the matrix in which every entry is for one
+/// element.
 #[derive(Debug)]
 pub struct Proof {
-    /// No radiosity is further than this from the exact answer, W/m², one row an element.
+    /// Upper bound on the distance of each radiosity from the exact solution, W/m², one row an element.
     pub bound: Vec<Rgb>,
-    /// What the spread of radiosity within clusters alone proves, W/m², one row an element.
+    /// The bound that follows from the spread of radiosity within clusters alone, W/m², one row an element.
     pub spread: Vec<Rgb>,
-    /// What exact rows say, if there are any.
+    /// Residuals in exact rows, if there are any.
     pub measured: Option<ResidualStatistics>,
 }
 
-/// The residual of the answer where rows are exact.
+/// Statistics of the residuals in exact rows.
 #[derive(Debug)]
 pub struct ResidualStatistics {
-    /// Number of rows; if they are all, they are what the bound is proved from.
+    /// Number of rows. If these are all rows, the bound is proved from them.
     pub rows: usize,
     /// Largest residual, W/m².
     pub largest: f64,
-    /// Largest residual over the mean radiosity, the worst channel.
+    /// Largest residual relative to the mean radiosity, the worst channel.
     pub largest_over_mean: f64,
-    /// Root mean square of the residual over the mean radiosity, the worst channel, from the area that each row speaks for.
+    /// Root mean square residual relative to the mean radiosity, the worst channel, weighted by the area that each
+    /// row represents.
     pub rms_over_mean: f64,
-    /// That over 1 − ρ̄: what the residual becomes if all of it is reflected on and has one sign. An estimate of the error
-    /// of the whole answer, mostly too large; not a bound, unless rows are all there are.
+    /// The root mean square residual divided by 1 − ρ̄: the error if all of the residual has the same sign and is
+    /// reflected repeatedly. An estimate of the error of the whole solution, usually too large; not a bound unless it
+    /// covers all rows.
     pub estimate: f64,
-    /// Form factors computed for it.
+    /// Number of form factors computed.
     pub form_factors: usize,
-    /// Time spent on them, summed over threads.
+    /// Time spent on form factors, summed over threads.
     pub time: Duration,
 }
 
-/// Prove and measure what there is to know about the answer; none if every entry is for one element and kept in full, for
-/// then the exchange's own bound says it all.
+/// Prove and measure the error of a solution. None if every entry is for one element and stored in full: then the
+/// bound of the exchange is complete.
 pub fn prove(
     placed: &PlacedParts,
     systems: &[InstanceSystem],
     outcome: &Outcome,
-    wanted: ExactRows,
+    requested: ExactRows,
     monitor: &Monitor,
 ) -> Option<Proof> {
     if !is_compressed(systems) {
@@ -64,11 +67,11 @@ pub fn prove(
     }
     let (radiosity, irradiance) = (placed.split(&outcome.radiosity), placed.split(&outcome.irradiance));
     let kept = StoredFormFactors::of(systems);
-    let solved = residual(systems, &radiosity, &irradiance);
-    let spread = kept.enclose(&sums_of_sizes(&solved, &kept.spread(&radiosity))).concat();
+    let exchange_residual = residual(systems, &radiosity, &irradiance);
+    let spread = kept.enclose(&sums_of_sizes(&exchange_residual, &kept.spread(&radiosity))).concat();
 
-    let chosen = choose(placed, systems, wanted);
-    // Without exact rows, because none are wanted or the run was stopped, the spread is all that proves anything.
+    let chosen = choose(placed, systems, requested);
+    // Without exact rows, because none are requested or the run was stopped, only the spread proves a bound.
     let found =
         if chosen.is_empty() { None } else { residuals(placed, systems, &radiosity, &chosen, monitor).ok() };
     let Some(found) = found else { return Some(Proof { bound: spread.clone(), spread, measured: None }) };
@@ -107,9 +110,10 @@ fn measured(
     }
 }
 
-/// Root mean square over the scene's area: each cluster's own mean square over its area, for the area it speaks for.
+/// Root mean square over the scene's area: the mean square of each cluster over its own area, weighted by the area
+/// that it represents.
 fn rms(placed: &PlacedParts, chosen: &[ReceiverCluster], values: &[Vec<Rgb>]) -> Rgb {
-    let (mut squares, mut spoken) = (Rgb::BLACK, 0.0);
+    let (mut squares, mut represented) = (Rgb::BLACK, 0.0);
     for (cluster, values) in chosen.iter().zip(values) {
         let elements =
             &placed.world.elements[placed.world.elements_of(cluster.instance)][cluster.receivers.clone()];
@@ -118,16 +122,16 @@ fn rms(placed: &PlacedParts, chosen: &[ReceiverCluster], values: &[Vec<Rgb>]) ->
             let weight = cluster.area * element.area / own;
             squares += *value * weight * *value;
         }
-        spoken += cluster.area;
+        represented += cluster.area;
     }
-    squares.map(|square: f64| (square / spoken).sqrt())
+    squares.map(|square: f64| (square / represented).sqrt())
 }
 
 fn sizes(values: &[Rgb]) -> Vec<Rgb> {
     values.iter().map(|v| v.map(f64::abs)).collect()
 }
 
-/// |a| + |b|, one vector an instance.
+/// a| + |b|, one vector for each instance.
 fn sums_of_sizes(a: &[Vec<Rgb>], b: &[Vec<Rgb>]) -> Vec<Vec<Rgb>> {
     let sum =
         |(a, b): (&Vec<Rgb>, &Vec<Rgb>)| sizes(a).into_iter().zip(sizes(b)).map(|(a, b)| a + b).collect();

@@ -1,21 +1,21 @@
-//! The settings that were chosen for a target error, and the trials that led to them.
+//! The settings chosen for a target error, and the trials that led to them.
 
 use serde::Serialize;
 
-/// What was chosen, and why.
+/// The chosen settings and the trials.
 #[derive(Debug, Clone, Serialize)]
 pub struct Advice {
-    /// The error asked for: of light at points of surfaces, root mean square over the mean, the worst channel.
+    /// The target error of light at points of surfaces, root mean square relative to the mean, the worst channel.
     pub target: f64,
-    /// Whether the estimate is as much below the target as caution asks for.
+    /// Whether the estimate is below the target, with a safety factor.
     pub met: bool,
     /// Largest edge of elements, m.
     pub element_size: f64,
-    /// What clusters may do to the answer.
+    /// The tolerance of clusters.
     pub tolerance: f64,
-    /// The error expected at points, as lightmaps and tables of points have them.
+    /// The expected error at points, as in lightmaps and tables of points.
     pub estimated: f64,
-    /// The error expected where each element has one value, as pictures and models have them.
+    /// The expected error of one value for each element, as in pictures and models.
     pub estimated_of_elements: f64,
     /// The sizes that were tried, in order.
     pub tried: Vec<Trial>,
@@ -30,14 +30,15 @@ pub struct Trial {
     pub element_size: f64,
     /// Number of elements.
     pub elements: usize,
-    /// How far light at points moved from the size before, root mean square over the mean; none of the first.
+    /// Change of the light at points since the previous size, root mean square relative to the mean; none for the
+    /// first size.
     pub moved: Option<f64>,
     /// Wall time.
     pub seconds: f64,
 }
 
 impl Advice {
-    /// What was chosen, for a person.
+    /// The chosen settings as text.
     pub fn lines(&self) -> Vec<String> {
         let percent = |error: f64| format!("{:.2} %", 100.0 * error);
         let tried = |trial: &Trial| {
@@ -50,11 +51,15 @@ impl Advice {
         } else if self.estimated.is_finite() {
             format!("NOT reached: light at points is expected to be off by {}", percent(self.estimated))
         } else {
-            "NOT reached: every part says its own element size, so that nothing was learnt".into()
+            "NOT reached: every part has its own fixed element size, so the error could not be estimated"
+                .into()
         };
         vec![
-            format!("error asked for: {} of the mean in RMS; {found}", percent(self.target)),
-            format!("with one value an element, as in pictures, by {}", percent(self.estimated_of_elements)),
+            format!("target error: {} of the mean in RMS; {found}", percent(self.target)),
+            format!(
+                "with one value for each element, as in pictures: off by {}",
+                percent(self.estimated_of_elements)
+            ),
             format!("tried {}", tried.join("; ")),
             format!("chosen: --element-size {} --tolerance {}", self.element_size, self.tolerance),
         ]

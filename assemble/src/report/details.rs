@@ -1,11 +1,11 @@
-//! The report in full for a person: the paper's steps, the rounds, sums and sizes. `--verbose` prints it.
+//! The complete report as text, printed by `--verbose`: the paper's steps, the rounds, sums and sizes.
 
 use super::text::{NOT_CONVERGED, bytes, left_out_line, percent, rgb};
 use super::{ErrorReport, Report, RoundReport, Verify};
 use crate::report::advice::Advice;
 
 impl Report {
-    /// The report in full for a person.
+    /// The complete report as text.
     pub fn details(&self) -> String {
         let mut lines = vec![
             format!(
@@ -43,8 +43,8 @@ impl Report {
             self.energy.travelling.0.map(|power| format!("{power:.1e}")).join(" ")
         ));
         lines.push(format!(
-            "column sums: {:.3} to {:.3}; collocation is exact by rows, so in a closed scene what is away from 1 shows as \
-             escaped",
+            "column sums: {:.3} to {:.3}; collocation is exact by rows, so in a closed scene deviations from 1 count as escaped \
+             power",
             self.column_sums[0], self.column_sums[1]
         ));
         lines.extend(self.verify.as_ref().map(Verify::line));
@@ -57,7 +57,7 @@ impl Report {
     fn blocks_line(&self) -> String {
         let blocks = &self.blocks;
         format!(
-            "own blocks: {} baked, {} reused, {} corrected for what stands inside; coupling: {} computed, {} reused; \
+            "self blocks: {} baked, {} reused, {} corrected for other parts inside; coupling: {} computed, {} reused; \
              {} form factors computed",
             blocks.self_baked,
             blocks.self_reused,
@@ -90,11 +90,11 @@ impl Report {
                 s.t2,
                 s.t3
             ),
-            format!("measured: {:.3} s in all with {} threads", s.total, rayon::current_num_threads()),
+            format!("measured: {:.3} s in total with {} threads", s.total, rayon::current_num_threads()),
         ]
     }
 
-    /// The first rounds and the last; a thousand lines help nobody.
+    /// The first rounds and the last ones.
     fn round_lines(&self) -> Vec<String> {
         let off = |round: &RoundReport| round.true_error.map_or(String::new(), |off| format!("{off:>14.3e}"));
         let shows_off = self.rounds.iter().any(|round| round.true_error.is_some());
@@ -128,7 +128,7 @@ impl Report {
         }
         if let Some(last) = self.rounds.last() {
             lines.push(format!(
-                "exchange: proved to be within {:.1e} W/m² of the solution with the form factors as they are kept",
+                "exchange: proved to be within {:.1e} W/m² of the solution with the stored form factors",
                 last.error_bound
             ));
         }
@@ -137,24 +137,24 @@ impl Report {
 }
 
 impl ErrorReport {
-    /// What is proved and what was measured of entries that stand for clusters.
+    /// The proved bound and the measured error of entries that represent clusters.
     fn lines(&self, elements: usize) -> Vec<String> {
         let mut lines = Vec::new();
         match self.spread {
             Some(_) if self.proved.is_finite() => lines.push(format!(
-                "clusters: at worst a radiosity is off by {:.2e} W/m², {} of the mean in RMS (a proved bound that adds up what \
-                 mostly cancels, from {})",
+                "clusters: proved error of any radiosity at most {:.2e} W/m², {} of the mean in RMS (adds errors that mostly \
+                 cancel; from {})",
                 self.proved,
                 percent(self.proved_rms),
                 self.proved_from
             )),
             Some(_) => lines.push(
-                "clusters: no bound on their error can be proved, as some surfaces reflect all light".to_owned(),
+                "clusters: no bound on their error can be proved, because some surfaces reflect all light".to_owned(),
             ),
             None => {}
         }
         if let Some(rows) = &self.exact_rows {
-            let whether = if rows.rows == elements { "all" } else { "a sample, which proves nothing" };
+            let whether = if rows.rows == elements { "all" } else { "a sample, not a proof" };
             lines.push(format!(
                 "clusters: measured in {} exact rows ({whether}), residual {} of the mean in RMS, {} at most: \
                  radiosity is off by about {}",

@@ -1,5 +1,5 @@
-//! Whether each part and each block is computed, reused or left out, and why, before a run or after it. The reasons come from
-//! the manifests that make the keys.
+//! Whether each part and block is computed, reused or skipped, and why, before or after a run. The reasons come from
+//! the manifests that also form the cache keys.
 
 use crate::equation::coupling::Coupled;
 use crate::placed_parts::PlacedParts;
@@ -7,40 +7,40 @@ use equilux_bake::oven::Baked;
 use equilux_bake::oven::cached::Origin;
 use serde::Serialize;
 
-/// One distinct part, before a run or after it.
+/// A distinct part, before or after a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct PartFate {
     /// Its name.
     pub name: String,
     /// Its elements.
     pub elements: usize,
-    /// In how many places it stands.
+    /// Number of instances.
     pub places: usize,
-    /// What becomes of its own form factors.
+    /// Fate of its own form factors.
     pub form_factors: Fate,
-    /// What became of its own light; none before the run.
+    /// Fate of its local equilibrium; none before the run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub light: Option<Fate>,
-    /// Who solves its equilibrium.
+    /// Solver of its local equilibrium.
     pub local_solver: String,
 }
 
-/// A part in its place, before a run or after it.
+/// An instance, before or after a run.
 #[derive(Debug, Clone, Serialize)]
 pub struct InstanceFate {
     /// Its name.
     pub name: String,
     /// Its part.
     pub part: String,
-    /// What stands inside it, so that its own form factors are not those of the part.
+    /// The instances inside it, which change its own form factors.
     pub intruders: Vec<String>,
-    /// What becomes of its own form factors with what stands inside; none if nothing does.
+    /// Fate of its own form factors with the instances inside it; none if there are none.
     pub corrected: Option<Fate>,
-    /// What becomes of the form factors to all others.
+    /// Fate of the form factors to all other instances.
     pub coupling: Fate,
 }
 
-/// Whether something is computed, and why.
+/// Whether something is computed or reused, and why.
 #[derive(Debug, Clone, Serialize)]
 pub struct Fate {
     /// `computed` or `reused`.
@@ -50,7 +50,7 @@ pub struct Fate {
 }
 
 impl Fate {
-    /// What the origin says.
+    /// The fate that an origin describes.
     pub fn of(origin: &Origin) -> Self {
         match origin {
             Origin::Reused => Self { how: "reused", reason: "all inputs are unchanged".into() },
@@ -65,10 +65,10 @@ impl Fate {
     }
 }
 
-/// So many instances that another does not see are named, more are counted.
-const NAMED: usize = 4;
+/// Number of unseen instances that are named; the rest are counted.
+const MAX_NAMED: usize = 4;
 
-/// The sentences, parts first.
+/// The fates of all parts and blocks as sentences, parts first.
 pub fn explained(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<String> {
     let parts =
         placed.parts.iter().enumerate().map(|(number, baked)| part_line(&part(placed, number, baked)));
@@ -106,15 +106,15 @@ fn blocks(placed: &PlacedParts, k: usize, coupled: &Coupled) -> Vec<String> {
 }
 
 fn unseen_clause(unseen: &[String]) -> String {
-    let named = unseen.iter().take(NAMED).cloned().collect::<Vec<_>>().join(", ");
+    let named = unseen.iter().take(MAX_NAMED).cloned().collect::<Vec<_>>().join(", ");
     match unseen.len() {
         0 => String::new(),
-        1..=NAMED => format!("; left out: {named}, of which it sees nothing"),
-        count => format!("; left out: {named} and {} more, of which it sees nothing", count - NAMED),
+        1..=MAX_NAMED => format!("; left out: {named}, of which it sees nothing"),
+        count => format!("; left out: {named} and {} more, of which it sees nothing", count - MAX_NAMED),
     }
 }
 
-/// Which instances a block's receivers see anything of.
+/// For each instance, whether an element of the block's instance sees any of it.
 pub fn seen_instances(placed: &PlacedParts, coupled: &Coupled) -> Vec<bool> {
     let mut seen = vec![false; placed.instances.len()];
     for sender in coupled.coupling.senders_seen() {
@@ -123,7 +123,7 @@ pub fn seen_instances(placed: &PlacedParts, coupled: &Coupled) -> Vec<bool> {
     seen
 }
 
-/// What becomes of a part, in a line.
+/// The fate of a part as a line.
 pub fn part_line(part: &PartFate) -> String {
     let places = if part.places == 1 { "1 place".into() } else { format!("{} places", part.places) };
     let light = part.light.as_ref().map_or(String::new(), |light| format!("; light {}", step(light)));
@@ -136,14 +136,14 @@ pub fn part_line(part: &PartFate) -> String {
     )
 }
 
-/// What becomes of an instance's own form factors, if something stands inside it.
+/// The fate of an instance's own form factors as a line, if there are instances inside it.
 pub fn corrected_line(instance: &InstanceFate) -> Option<String> {
     let corrected = instance.corrected.as_ref()?;
     let inside = instance.intruders.join(", ");
     Some(format!("inside {} is {inside}: its own form factors {}", instance.name, step(corrected)))
 }
 
-/// What is done, and why.
+/// A fate as text.
 pub fn step(step: &Fate) -> String {
     format!("{}: {}", step.how, step.reason)
 }

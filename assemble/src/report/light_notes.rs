@@ -1,5 +1,5 @@
-//! Sentences about what shines into a scene, known before anything is computed: in which units the intensities of lamps are
-//! taken, whether they can be meant so, which lamps stand in closed meshes, and whether anything shines at all.
+//! Notes on the lights of a scene, known before anything is computed: the units of intensities, implausible
+//! intensities, lamps inside closed meshes, and scenes without light.
 
 use crate::gather::outside::{LUMENS_PER_WATT, in_watts};
 use crate::gather::sky::Sky;
@@ -7,13 +7,13 @@ use equilux_bake::tidy::enclosed_lamps::{EnclosedLamp, enclosed_lamps};
 use equilux_formats::{LightKind, LightUnits, PunctualLight, Scene};
 use std::f64::consts::PI;
 
-/// No lamp shines with more than this to be believed, W/sr: more than a kilowatt of light.
-const BRIGHTEST_LAMP: f64 = 100.0;
+/// Maximum plausible intensity of a lamp, W/sr: more than a kilowatt of light.
+const MAX_PLAUSIBLE_LAMP: f64 = 100.0;
 
-/// No parallel light has more to be believed, W/m²: what the sun sends to the earth.
-const BRIGHTEST_SUN: f64 = 1361.0;
+/// Maximum plausible irradiance of parallel light, W/m²: the solar constant.
+const MAX_PLAUSIBLE_SUN: f64 = 1361.0;
 
-/// What is to be known of the lights of `scene` under a sky, with their intensities in `units`, if the command line says.
+/// Notes on the lights of `scene` under a sky. `units`: units of the intensities, if given on the command line.
 pub fn light_notes(scene: &Scene, units: Option<LightUnits>, sky: Option<&Sky>) -> Vec<String> {
     if is_dark(scene, sky) {
         return vec![
@@ -27,22 +27,22 @@ pub fn light_notes(scene: &Scene, units: Option<LightUnits>, sky: Option<&Sky>) 
         None => units_taken(&scene.lights).into_iter().chain(unbelievable(&scene.lights)).collect(),
     };
     let enclosed = enclosed_lamps(scene);
-    let sentences = enclosed.iter().take(NAMED).map(|EnclosedLamp { lamp, shell }| {
+    let sentences = enclosed.iter().take(MAX_NAMED).map(|EnclosedLamp { lamp, shell }| {
         format!(
-            "lamp `{lamp}` stands inside `{shell}`, which is closed and lets no light through here, whatever its alpha: it \
-             lights nothing outside; remove `{shell}`, open it, or let it emit instead"
+            "lamp `{lamp}` stands inside `{shell}`, which is closed and treated as opaque, whatever its alpha: it lights \
+             nothing outside; remove `{shell}`, open it, or let it emit instead"
         )
     });
     let more = more(enclosed.len(), "lamps inside closed meshes");
     of_units.into_iter().chain(sentences).chain(more).collect()
 }
 
-/// So many lamps of a kind are named.
-pub const NAMED: usize = 3;
+/// Number of lamps of a kind that are named; the rest are counted.
+pub const MAX_NAMED: usize = 3;
 
-/// A sentence about those of `count` that are not named.
+/// A note on the lamps of `count` that are not named.
 pub fn more(count: usize, what: &str) -> Option<String> {
-    count.checked_sub(NAMED).filter(|&rest| rest > 0).map(|rest| format!("{rest} more {what}"))
+    count.checked_sub(MAX_NAMED).filter(|&rest| rest > 0).map(|rest| format!("{rest} more {what}"))
 }
 
 fn is_dark(scene: &Scene, sky: Option<&Sky>) -> bool {
@@ -60,17 +60,17 @@ fn is_dark(scene: &Scene, sky: Option<&Sky>) -> bool {
         && !scene.instances.iter().any(emits)
 }
 
-/// Which units are taken for what Blender wrote, and how to say otherwise.
+/// The assumed units of a file written by Blender, and how to override them.
 fn units_taken(lights: &[PunctualLight]) -> Vec<String> {
     let sentence = |units: LightUnits| {
         match units {
         LightUnits::Radiometric => None,
         LightUnits::Photometric => Some(format!(
-            "lamps are taken in candela and lux of {LUMENS_PER_WATT} lm/W (--light-units photometric), as Blender's exporter \
+            "lamp intensities are taken as candela and lux at {LUMENS_PER_WATT} lm/W (--light-units photometric), as Blender's exporter \
              writes them in its lighting mode Standard; give --light-units radiometric if it was Unitless, blender-raw if it was Raw"
         )),
         LightUnits::BlenderRaw => Some(
-            "lamps are taken in watts (--light-units blender-raw), as Blender's exporter wrote them before version 3.4; \
+            "lamp intensities are taken as watts (--light-units blender-raw), as Blender's exporter wrote them before version 3.4; \
              give --light-units photometric or radiometric if they are not"
                 .to_owned(),
         ),
@@ -82,13 +82,13 @@ fn units_taken(lights: &[PunctualLight]) -> Vec<String> {
     units.into_iter().filter_map(sentence).collect()
 }
 
-/// A lamp whose watts can hardly be watts.
+/// A note on a lamp with an implausible intensity.
 fn unbelievable(lights: &[PunctualLight]) -> Option<String> {
     let brightness = |light: &PunctualLight| {
         let watts = in_watts(light, None).intensity.into_iter().fold(0.0, f64::max);
         let (most, unit) = match light.kind {
-            LightKind::Directional => (BRIGHTEST_SUN, "W/m²"),
-            LightKind::Point | LightKind::Spot { .. } => (BRIGHTEST_LAMP, "W/sr"),
+            LightKind::Directional => (MAX_PLAUSIBLE_SUN, "W/m²"),
+            LightKind::Point | LightKind::Spot { .. } => (MAX_PLAUSIBLE_LAMP, "W/sr"),
         };
         (watts / most, watts, unit)
     };
@@ -97,12 +97,12 @@ fn unbelievable(lights: &[PunctualLight]) -> Option<String> {
     let (excess, watts, unit) = brightness(brightest);
     let whole = match brightest.kind {
         LightKind::Directional => "brighter than the sun".to_owned(),
-        LightKind::Point | LightKind::Spot { .. } => format!("{:.0} W to all sides", 4.0 * PI * watts),
+        LightKind::Point | LightKind::Spot { .. } => format!("{:.0} W in all directions", 4.0 * PI * watts),
     };
     (excess > 1.0).then(|| {
         format!(
-            "lamp `{}` sends {watts:.0} {unit}, {whole}, as numbers of the file are taken for watts; if they are candela \
-             and lux, give --light-units photometric",
+            "lamp `{}` sends {watts:.0} {unit}, {whole}, because the file's numbers are taken as watts; if they are candela and \
+             lux, give --light-units photometric",
             brightest.name
         )
     })

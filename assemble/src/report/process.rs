@@ -3,8 +3,8 @@
 #[cfg(unix)]
 use nix::sys::resource::{Usage, UsageWho, getrusage};
 
-/// The most memory this process held so far, bytes; none where the system does not report it. Linux's getrusage also counts
-/// what the process held before it became this program, which for a child is the memory of its parent.
+/// Peak memory of this process so far, bytes; none where the operating system does not report it. On Linux, getrusage
+/// also counts the memory before the process became this program, which for a child process is that of its parent.
 #[cfg(target_os = "linux")]
 pub fn peak_rss() -> Option<usize> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
@@ -16,12 +16,13 @@ pub fn peak_rss() -> Option<usize> {
 /// The most memory this process held so far, bytes; none where the system does not report it.
 #[cfg(all(unix, not(target_os = "linux")))]
 pub fn peak_rss() -> Option<usize> {
-    // Kilobytes, but for Apple's systems, where they are bytes.
+    // Kilobytes, except on Apple's systems, which use bytes.
     let unit = if cfg!(target_vendor = "apple") { 1 } else { 1024 };
     usize::try_from(usage()?.max_rss()).ok().map(|size| size * unit)
 }
 
-/// Processor time that this process took so far, all threads together, seconds; none where the system does not report it.
+/// Processor time of this process so far, all threads together, seconds; none where the operating system does not
+/// report it.
 #[cfg(unix)]
 pub fn cpu_seconds() -> Option<f64> {
     let usage = usage()?;
@@ -35,19 +36,19 @@ fn usage() -> Option<Usage> {
     getrusage(UsageWho::RUSAGE_SELF).ok()
 }
 
-/// The most memory this process held so far, bytes; none, as this system does not report it.
+/// Peak memory of this process so far, bytes; none, since this operating system does not report it.
 #[cfg(not(unix))]
 pub fn peak_rss() -> Option<usize> {
     None
 }
 
-/// Processor time that this process took so far, seconds; none, as this system does not report it.
+/// Processor time of this process so far, seconds; none, since this operating system does not report it.
 #[cfg(not(unix))]
 pub fn cpu_seconds() -> Option<f64> {
     None
 }
 
-/// Processor time since [`cpu_seconds`] was `start`, seconds; none where the system does not report it.
+/// Processor time since [`cpu_seconds`] was `start`, seconds; none where the operating system does not report it.
 pub fn cpu_since(start: Option<f64>) -> Option<f64> {
     cpu_seconds().zip(start).map(|(now, start)| now - start)
 }

@@ -1,4 +1,4 @@
-//! The paper's table of steps from what was measured.
+//! The paper's table of steps, from measured times.
 
 use crate::equation::coupling::Coupled;
 use crate::exchange::step_times::StepTimes;
@@ -6,8 +6,9 @@ use crate::placed_parts::PlacedParts;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The paper's steps: 1, 2 own blocks of the first part and of the others; 3, 4 coupling into the first and into the
-/// others; 5, 6 equilibrium in the first and in the others; 7 transfer to the others, 8 to the first.
+/// The paper's steps: 1, 2 self blocks of the first part and of the others; 3, 4 coupling into the first and into the
+/// others; 5, 6 local equilibria of the first and of the others; 7 transfer to the others, 8 to the first. All in
+/// seconds.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Seconds {
@@ -27,34 +28,34 @@ pub struct Seconds {
     pub step7: f64,
     /// Transfer from 2 to 1.
     pub step8: f64,
-    /// All steps one after the other.
+    /// All steps in sequence.
     pub t1: f64,
-    /// Own blocks and equilibria of the parts side by side.
+    /// Self blocks and local equilibria of the parts in parallel.
     pub t2: f64,
-    /// Everything side by side that can be: the longest chain.
+    /// All independent steps in parallel: the longest chain.
     pub t3: f64,
-    /// The exchange beside steps 5–8: the coarse and the Krylov space, bounds and energy accounts; wall time.
+    /// Exchange outside steps 5–8: coarse and Krylov spaces, bounds and power balances; wall time.
     pub exchange_overhead: f64,
-    /// The light of points that were asked for; wall time.
+    /// Light at requested points; wall time.
     pub points: f64,
-    /// The same in processor time, where the system reports it.
+    /// Light at requested points; processor time, where the operating system reports it.
     pub points_cpu: Option<f64>,
-    /// Wall time from the scene's file until the light of all elements is known: everything but proofs and outputs.
+    /// Wall time from the scene's file to the light of all elements: everything except proofs and outputs.
     pub solve: f64,
-    /// The same in processor time, where the system tells.
+    /// Processor time for the same work, where the operating system reports it.
     pub solve_cpu: Option<f64>,
     /// Wall time of the run.
     pub total: f64,
 }
 
-/// Steps 1–8 and T₁, T₂, T₃. Steps 1–4 are summed over threads; what came from the cache took nothing. The first
-/// instance is the paper's part 1, all others together its part 2.
+/// Steps 1–8 and T₁, T₂, T₃. Steps 1–4 are summed over threads; blocks from the cache count as 0. The first instance
+/// is the paper's part 1, all others together are its part 2.
 pub fn seconds(placed: &PlacedParts, coupled: &[Coupled], times: &StepTimes) -> Seconds {
     let mut baked = vec![false; placed.parts.len()];
     let own: Vec<f64> = (0..coupled.len())
         .map(|k| {
             let part = placed.instances[k].part.index();
-            // A part that stands in several places was baked once: the time belongs to the first.
+            // A part with several instances was baked once: the time belongs to the first instance.
             let first = !std::mem::replace(&mut baked[part], true);
             let bake = if first { placed.parts[part].form_factor_time } else { Duration::ZERO };
             (bake + coupled[k].corrected.as_ref().map_or(Duration::ZERO, |c| c.time)).as_secs_f64()
@@ -88,7 +89,7 @@ pub fn seconds(placed: &PlacedParts, coupled: &[Coupled], times: &StepTimes) -> 
     }
 }
 
-/// Steps 5–8 alone: what rounds take.
+/// Steps 5–8 alone, the times of rounds.
 pub fn rounds(times: &StepTimes) -> Seconds {
     let ((step5, step6), (step8, step7)) =
         (split(&in_seconds(&times.solve)), split(&in_seconds(&times.transfer)));

@@ -1,4 +1,4 @@
-//! From the results of a run to its report.
+//! Creates the report from the results of a run.
 
 use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify};
 use crate::equation::Equation;
@@ -19,35 +19,35 @@ use equilux_bake::oven::Baked;
 use equilux_formats::Rgb;
 use std::collections::BTreeMap;
 
-/// Reasons to leave something out, as they follow a count.
+/// Reasons for skipped work, each following a count: couplings of unseen parts.
 pub const UNSEEN: &str = "couplings between parts that cannot see each other";
-/// Shells of which only the outside has elements.
+/// Shells of which only the outer side has elements.
 pub const HIDDEN_SHELLS: &str = "inner sides of closed two-sided shells in which nothing shines";
-/// Rows that wait for the end of the exchange.
+/// Rows that are skipped until the end of the exchange.
 pub const BLACK_ROWS: &str = "rows of black receivers in every round, gathered once in the end";
-/// Local equilibria of instances that had nothing to answer.
+/// Local solves of instances to which no light arrived.
 pub const DARK_SOLVES: &str = "equilibria of parts to which nothing new arrived";
-/// Coarse spaces of groups of parts that hardly return light.
+/// Coarse spaces of groups of parts that return little light.
 pub const COARSE_SPACES: &str = "coarse spaces between parts that return little light to each other";
-/// Own blocks of instances that another instance of the same part has.
+/// Self blocks that instances share with others of the same part.
 pub const SHARED: &str = "own blocks that equal parts share";
 
-/// The results of a sources.
+/// The results of a run from which the report is created.
 #[derive(Debug, Clone, Copy)]
 pub struct ReportSources<'a> {
-    /// The equation that was solved.
+    /// The equation of the scene.
     pub equation: &'a Equation,
-    /// The equation of each instance.
+    /// The block row of each instance.
     pub systems: &'a [InstanceSystem<'a>],
     /// The exchange.
     pub outcome: &'a Outcome,
-    /// What is proved of the error of clusters, if there are clusters.
+    /// The error of clusters, if there are clusters.
     pub proof: Option<&'a Proof>,
-    /// The classic solution, if asked for.
+    /// The classic solution, if requested.
     pub classic: Option<&'a Classic>,
 }
 
-/// All that the results tell; names, files, and what the system tells are left to the caller.
+/// The report of these results. The caller fills in names, files, and measurements of the operating system.
 pub fn summary(sources: &ReportSources) -> Report {
     let ReportSources { equation, systems, outcome, .. } = *sources;
     let Equation { placed, coupled, .. } = equation;

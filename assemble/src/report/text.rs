@@ -1,4 +1,4 @@
-//! The report in a few lines for a person: the scene, its time, its error, notes, and where the files are.
+//! The short report as text: the scene, its time, its error, notes, and the written files.
 
 use super::{ErrorReport, Report, Verify};
 use crate::report::advice::Advice;
@@ -6,19 +6,19 @@ use equilux_formats::Rgb;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Notes beyond this number are counted.
-const MOST_NOTES: usize = 6;
+/// Maximum number of printed notes; the rest are counted.
+const MAX_NOTES: usize = 6;
 
 /// The state of an exchange that ended above its error bound.
 pub const NOT_CONVERGED: &str = "not converged: stopped early, or limited by rounding";
 
 impl Report {
-    /// The files that were written and the notes on them, for a person.
+    /// The written files and the notes, as text.
     pub fn outputs_text(&self) -> String {
         self.notes_lines().into_iter().chain(self.written_lines()).map(|line| line + "\n").collect()
     }
 
-    /// The report in a few lines for a person.
+    /// The short report as text.
     pub fn text(&self) -> String {
         let mut lines = vec![
             format!(
@@ -62,8 +62,8 @@ impl Report {
 
     fn notes_lines(&self) -> Vec<String> {
         let mut lines: Vec<String> =
-            self.notes.iter().take(MOST_NOTES).map(|note| format!("note: {note}")).collect();
-        if let more @ 1.. = self.notes.len().saturating_sub(MOST_NOTES) {
+            self.notes.iter().take(MAX_NOTES).map(|note| format!("note: {note}")).collect();
+        if let more @ 1.. = self.notes.len().saturating_sub(MAX_NOTES) {
             lines.push(format!("{} more: --verbose or --json", counted(more, "note")));
         }
         lines
@@ -88,12 +88,12 @@ impl Report {
 }
 
 impl ErrorReport {
-    /// What is measured and what is proved, in a clause each.
+    /// The measured error and the proved bound, in a clause each.
     fn text(&self) -> String {
         let proved = if self.proved.is_finite() {
             format!("proved below {} W/m² everywhere", rounded(self.proved))
         } else {
-            "without a proof, as some surfaces reflect all light".into()
+            "without a proof, because some surfaces reflect all light".into()
         };
         match &self.exact_rows {
             Some(rows) => format!(
@@ -122,7 +122,7 @@ impl Verify {
     }
 }
 
-/// A number of things.
+/// A count with its noun.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
@@ -150,13 +150,13 @@ pub fn percent(share: f64) -> String {
     format!("{:.2} %", 100.0 * share)
 }
 
-/// What was left out and how often, if anything was.
+/// The skipped work and its counts as a line, if there is any.
 pub fn left_out_line(counts: &BTreeMap<String, usize>) -> Option<String> {
     let counts: Vec<String> = counts.iter().map(|(reason, count)| format!("{count} {reason}")).collect();
     (!counts.is_empty()).then(|| format!("left out: {}", counts.join("; ")))
 }
 
-/// A number of bytes in a unit that suits it.
+/// A number of bytes in a suitable unit.
 pub fn bytes(count: usize) -> String {
     let mut value = count as f64;
     for unit in ["B", "kB", "MB", "GB"] {

@@ -1,13 +1,13 @@
-//! Lamps that light nothing: results of a run → sentences that name them.
+//! Notes on lamps that light nothing.
 
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
-use crate::report::light_notes::{NAMED, more};
+use crate::report::light_notes::{MAX_NAMED, more};
 use equilux_bake::tidy::enclosed_lamps::enclosed_lamps;
 use equilux_formats::Scene;
 
-/// Sentences about the lamps called `unlit`, of which nothing arrives at any element, and about instances that emit but that
-/// no element sees. Not about lamps that stand in closed meshes, which are named anyway.
+/// Notes on the lamps named `unlit`, whose light reaches no element, and on emitting instances that no element sees.
+/// Excludes lamps inside closed meshes, which have their own note.
 pub fn unlit_notes(
     scene: &Scene,
     unlit: &[String],
@@ -18,16 +18,16 @@ pub fn unlit_notes(
     let is_open = |name: &&String| !enclosed.iter().any(|enclosed| enclosed.lamp == **name);
     let unseen = unseen(placed, systems);
     let unlit: Vec<&String> = unlit.iter().chain(&unseen).filter(is_open).collect();
-    let sentences = unlit.iter().take(NAMED).map(|name| {
+    let sentences = unlit.iter().take(MAX_NAMED).map(|name| {
         format!(
-            "lamp `{name}` lights nothing: what it shines at is hidden, looks away or is not there; move or turn it, or flip \
-             the normals of what stands around it"
+            "lamp `{name}` lights nothing: the surfaces it shines at are hidden, face away or do not exist; move or turn it, or flip \
+             the normals of the surfaces around it"
         )
     });
     sentences.chain(more(unlit.len(), "lamps that light nothing")).collect()
 }
 
-/// The names of the instances that emit and that no element sees.
+/// The names of emitting instances that no element sees.
 fn unseen(placed: &PlacedParts, systems: &[InstanceSystem]) -> Vec<String> {
     let world = &placed.world;
     let mut emits: Vec<bool> = Vec::with_capacity(world.nodes.len());

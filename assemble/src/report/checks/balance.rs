@@ -1,31 +1,32 @@
-//! Energy that does not add up: a closed scene absorbs what it emits, but for what collocation costs.
+//! Power that does not balance: a closed scene absorbs what it emits, except for the error of collocation.
 //!
-//! Of what element j sends, Σ_i A_i F_ij / A_j arrives. F_ij is taken at the receivers' centroids, so where a sender is nearer
-//! to a receiver than the receiver is wide, the sum may be far from one: a lamp under a ceiling, for instance.
+//! Of the power that element j sends, Σ_i A_i F_ij / A_j arrives. F_ij is computed at the receivers' centroids, so
+//! where a sender is closer to a receiver than the receiver is wide, the sum may be far from one: for instance, a
+//! lamp under a ceiling.
 
-use super::view::View;
+use super::ray_sample::RaySample;
 use crate::exchange::outcome::Outcome;
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
 use std::collections::BTreeMap;
 
-/// So much of the energy may be missing or too much.
-const SHARE: f64 = 0.01;
+/// Maximum share of the power that may be lost or gained.
+const MAX_IMBALANCE_SHARE: f64 = 0.01;
 
-/// A sentence, if a closed scene absorbs noticeably more or less than it emits.
+/// A note, if a closed scene absorbs noticeably more or less than it emits.
 pub(super) fn note(
     placed: &PlacedParts,
     systems: &[InstanceSystem],
     outcome: &Outcome,
-    view: &View,
+    rays: &RaySample,
 ) -> Option<String> {
     let energy = &outcome.convergence.energy;
     let channel = (0..3).max_by(|&a, &b| energy.emitted[a].total_cmp(&energy.emitted[b]))?;
     let (emitted, absorbed) = (energy.emitted[channel], energy.absorbed[channel]);
-    // What falls on black backs is absorbed there and not counted.
-    let gained = absorbed > (1.0 + SHARE) * emitted;
-    let lost = absorbed < (1.0 - SHARE) * emitted && !view.shows_backs();
-    if emitted <= 0.0 || !(gained || lost) || !view.is_closed() {
+    // Light that meets black backs is absorbed there and not counted.
+    let gained = absorbed > (1.0 + MAX_IMBALANCE_SHARE) * emitted;
+    let lost = absorbed < (1.0 - MAX_IMBALANCE_SHARE) * emitted && !rays.shows_backs();
+    if emitted <= 0.0 || !(gained || lost) || !rays.is_closed() {
         return None;
     }
     let (sender, receiver) = culprits(placed, systems, outcome, channel, gained)?;
@@ -42,7 +43,7 @@ pub(super) fn note(
     ))
 }
 
-/// The sender and the receiver between which most power is gained, or lost.
+/// The sender and the receiver between which the most power is gained or lost.
 fn culprits(
     placed: &PlacedParts,
     systems: &[InstanceSystem],
@@ -56,7 +57,7 @@ fn culprits(
         .zip(&radiosity)
         .map(|(system, b)| system.clusters.means(b).into_iter().map(|b| b[channel]).collect())
         .collect();
-    // Power that each instance gets from each other, and what each sends.
+    // Power that each instance receives from each other, and power that each sends.
     let mut arriving: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for (k, system) in systems.iter().enumerate() {
         for (block, first) in [(system.self_block, placed.world.nodes_of(k).start), (system.coupling, 0)] {

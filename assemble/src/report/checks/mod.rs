@@ -1,19 +1,21 @@
-//! What looks wrong in a scene or in its light: results of a run → sentences that say what to change.
+//! Checks for probable errors in a scene or its light. Input: the results of a run. Output: notes that say what to
+//! change.
 
 mod backs;
 mod balance;
 mod overfull;
-mod view;
+mod ray_sample;
 
 use crate::exchange::outcome::Outcome;
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
-use view::View;
+use ray_sample::RaySample;
 
-/// Sentences about rows above one, energy that does not add up, and surfaces that show their black backs.
+/// Notes on rows that sum to more than one, on power that does not balance, and on surfaces that show their black
+/// backs.
 pub fn checks(placed: &PlacedParts, systems: &[InstanceSystem], outcome: &Outcome) -> Vec<String> {
-    let view = View::of(placed);
-    let overfull = overfull::notes(placed, systems, &view);
-    let balance = balance::note(placed, systems, outcome, &view);
-    overfull.into_iter().chain(balance).chain(backs::notes(placed, &view)).collect()
+    let rays = RaySample::of(placed);
+    let overfull = overfull::notes(placed, systems, &rays);
+    let balance = balance::note(placed, systems, outcome, &rays);
+    overfull.into_iter().chain(balance).chain(backs::notes(placed, &rays)).collect()
 }

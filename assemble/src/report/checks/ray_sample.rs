@@ -1,7 +1,7 @@
-//! What a scene's elements see, by a sample of rays: element → direction → first hit.
+//! A sample of rays from a scene's elements: element → direction → first hit.
 //!
-//! Elements are chosen by area and directions by the cosine, so that each ray carries the same share of all light that a
-//! uniformly bright scene would exchange.
+//! Elements are chosen by area and directions by the cosine, so that each ray represents the same share of the light
+//! that a uniformly bright scene would exchange.
 
 use crate::placed_parts::PlacedParts;
 use equilux_bake::rays::{Hit, RayIndex};
@@ -9,22 +9,22 @@ use equilux_formats::Element;
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// Number of rays: a share of 1 % is then 82 of them, give or take 9.
+/// Number of rays: a share of 1 % is 82 of them, with a standard deviation of 9.
 const RAYS: usize = 8192;
 
 /// The generalised golden ratio of three dimensions, whose powers make an evenly spread sequence (Roberts 2018).
-const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
+const SEQUENCE_STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
 
-/// The hits of a sample of rays, and an index to ask for more.
-pub(super) struct View<'a> {
-    /// What each ray meets; none if it leaves the scene.
+/// The hits of a sample of rays, and an index for more rays.
+pub(super) struct RaySample<'a> {
+    /// The first hit of each ray; none if it leaves the scene.
     pub hits: Vec<Option<Hit>>,
     /// All elements.
     pub index: RayIndex<'a>,
 }
 
-impl<'a> View<'a> {
-    /// A sample of what the elements of a scene see.
+impl<'a> RaySample<'a> {
+    /// A sample of rays from the elements of a scene.
     pub(super) fn of(placed: &'a PlacedParts) -> Self {
         let elements = &placed.world.elements;
         let index = RayIndex::new(elements);
@@ -34,7 +34,7 @@ impl<'a> View<'a> {
             sum + element.area
         });
         let ray = |number: usize| {
-            let [u, v, w] = STEPS.map(|step| (0.5 + step * number as f64).fract());
+            let [u, v, w] = SEQUENCE_STEPS.map(|step| (0.5 + step * number as f64).fract());
             let chosen = upto.partition_point(|&upto| upto <= u * total).min(elements.len() - 1);
             let (start, direction) = leaving(&elements[chosen], DVec2::new(v, w));
             index.first_hit(start, direction)
@@ -54,7 +54,7 @@ impl<'a> View<'a> {
     }
 }
 
-/// A ray from just above the centroid of an element, by two numbers in 0..1.
+/// A ray from just above the centroid of an element, from two numbers in 0..1.
 fn leaving(element: &Element, at: DVec2) -> (DVec3, DVec3) {
     let (u, v) = element.normal.any_orthonormal_pair();
     let (sin, cos) = (TAU * at.x).sin_cos();
