@@ -5,10 +5,10 @@
 //! 1. `gltf_import` reads a file into parts, instances and lamps; `tidy` removes surfaces that no light can reach.
 //! 2. `elements` cuts surfaces into elements, faces that block light, and a hierarchy of clusters; `textures` gives
 //!    elements their mean colours.
-//! 3. `world` places geometry and knows what blocks light in it; `meshes` finds what curved meshes hide.
+//! 3. `world` holds placed geometry and its occluders; `meshes` computes what curved meshes hide.
 //! 4. `treecode` computes rows of exact form factors (`form_factor`); `rays` finds first hits of rays.
-//! 5. `equilibrium` solves a part's own light.
-//! 6. `oven` runs all this for a part or for many files, and keeps what it makes in a cache.
+//! 5. `equilibrium` solves a part's local equilibrium.
+//! 6. `oven` runs these steps for one part or many files and caches the results.
 //!
 //! `geometry` lies below all of them. `assemble` couples parts with the same form-factor code; for that the modules are
 //! public but hidden, and only the names below are the library's face.

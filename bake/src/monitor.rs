@@ -1,7 +1,7 @@
-//! Progress of a run, and the request to stop it. Shared between the threads that work and the one that shows progress.
+//! Progress of a run, and the request to stop it. Shared between the working threads and the one that shows progress.
 //!
-//! Work is measured in rows of form factors: a run expects so many, each step is so many, and what the cache provides is
-//! subtracted. The share that is done and the time left follow, for the whole run.
+//! Work is measured in rows of form factors: those of the whole run, minus those that the cache provides, and those of
+//! each step. The completed share and the remaining time of the whole run follow from these numbers.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -18,7 +18,7 @@ pub struct Monitor {
 /// A named step of known size.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Step {
-    /// What is being done, for a person.
+    /// A description for the user.
     pub what: String,
     /// Its size in units of its own, such as receivers; 0 if it is not known.
     pub total: u64,
@@ -43,29 +43,29 @@ struct Work {
 pub struct Progress {
     /// The current step.
     pub step: Step,
-    /// How much of the step is done, in the step's units.
+    /// The completed units of the step.
     pub done: u64,
-    /// The share of the whole run that is done, 0 to 1.
+    /// The completed share of the whole run, 0 to 1.
     pub share: f64,
-    /// The time left for the whole run at the present pace; none at the beginning.
+    /// The remaining time of the whole run at the present rate; none at the beginning.
     pub left: Option<Duration>,
 }
 
-/// No time left is foretold before this share of the work is done.
+/// The remaining time is estimated once this share of the work is done.
 const FORETOLD_FROM: f64 = 0.02;
 
 impl Monitor {
-    /// Expect so many rows of work, or as much as that costs.
+    /// Adds `rows` rows, or work of equal cost, to the expected work of the run.
     pub fn expect(&self, rows: f64) {
         self.work().expected += rows;
     }
 
-    /// Expect so many rows less: the cache provides them.
+    /// Subtracts `rows` rows that the cache provides.
     pub fn spare(&self, rows: f64) {
         self.work().expected -= rows;
     }
 
-    /// Begin a step of `total` units, 0 if that is not known, which cost as much as `rows` rows. The step before is done.
+    /// Begins a step of `total` units (0 if unknown) that costs as much as `rows` rows, and completes the previous step.
     pub fn begin(&self, what: impl Into<String>, total: usize, rows: f64) {
         let mut work = self.work();
         work.step = Step { what: what.into(), total: total as u64 };
@@ -76,12 +76,12 @@ impl Monitor {
         self.done.store(0, Ordering::Relaxed);
     }
 
-    /// Count units of the step as done.
+    /// Counts `units` of the step as completed.
     pub fn advance(&self, units: usize) {
         self.done.fetch_add(units as u64, Ordering::Relaxed);
     }
 
-    /// How far the run is.
+    /// The progress of the run.
     pub fn now(&self) -> Progress {
         let work = self.work();
         let done = self.done.load(Ordering::Relaxed);
@@ -93,12 +93,12 @@ impl Monitor {
         Progress { step: work.step.clone(), done, share, left }
     }
 
-    /// Request an end: work stops at the next point where its results are whole.
+    /// Requests a stop: work ends at the next point where its results are complete.
     pub fn stop(&self) {
         self.stopped.store(true, Ordering::Relaxed);
     }
 
-    /// Whether an end was requested.
+    /// Whether a stop was requested.
     pub fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

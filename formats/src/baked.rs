@@ -35,13 +35,13 @@ pub struct LocalEquilibrium {
     /// The factors of I − ρF_kk; only the direct solver keeps them.
     pub factors: Option<Factors>,
     /// How the part answers light from outside.
-    pub answers: Answers,
+    pub answers: BoundaryResponses,
 }
 
 /// How a part answers light that arrives from outside: what an exchange needs to know of it to foresee where light will
 /// settle when it goes to and fro between parts.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Answers {
+pub struct BoundaryResponses {
     /// The part's radiosity under some simple lights from outside, one row an element; orthonormal by area in each channel:
     /// Σ_i A_i a_i b_i is 1 for a = b, else 0. A channel that has fewer than the others has zeros in their place.
     pub radiosity: Vec<Vec<Rgb>>,

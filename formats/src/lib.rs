@@ -21,7 +21,7 @@ mod stored;
 mod texture;
 mod whole_file;
 
-pub use baked::{Answers, BakedGeometry, BakedLight, BakedPart, Factors, LocalEquilibrium, Lu};
+pub use baked::{BakedGeometry, BakedLight, BakedPart, BoundaryResponses, Factors, LocalEquilibrium, Lu};
 pub use clusters::ClusterTree;
 pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
 pub use error::{Error, Problem, Result, unless_stopped};
@@ -33,7 +33,7 @@ pub use rgb::Rgb;
 pub use rows::{Precision, RowGroup, RowSumDefect, Rows, SINGLE_ROUNDING};
 pub use scene::{Camera, Instance, LightKind, LightUnits, PunctualLight, Repainted, Scene};
 pub use solution::{Solution, SolvedInstance};
-pub use store::{Lookup, Store, Swept, Tally, Turn};
+pub use store::{Evicted, Lookup, Store, Tally, Turn};
 pub use stored::Stored;
 pub use texture::{Texture, TexturedTriangle, Textures, Wrap};
 pub use whole_file::{check_writable_beside, remove_left_over_beside, write_whole};

@@ -3,10 +3,10 @@
 //! Processes may share the folder: files appear whole by renaming, equal keys mean equal content, so it does not matter
 //! who writes last, and turns keep two from making the same thing at once. Any file may be removed at any time.
 
-mod sweep;
+mod eviction;
 mod turn;
 
-pub use sweep::{Swept, Tally};
+pub use eviction::{Evicted, Tally};
 pub use turn::Turn;
 
 use crate::container::{Kind, Reader, Writer};
@@ -162,9 +162,9 @@ impl Store {
         self.path(Kind::Manifest, Content::new().bytes(name).digest())
     }
 
-    /// A file's time is when it was last used: sweeps go by it.
+    /// A file's time is when it was last used: eviction orders files by it.
     fn note_use(&self, path: PathBuf) {
-        // Another user's cache may be read-only: its times stay as they are, and only the order of sweeps depends on them.
+        // Another user's cache may be read-only: its times stay as they are, and only the order of eviction depends on them.
         let _ = File::options().append(true).open(&path).and_then(|f| f.set_modified(SystemTime::now()));
         self.log().used.insert(path);
     }

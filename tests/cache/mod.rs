@@ -1,8 +1,8 @@
-//! The care of a cache, and what build tools are told: kept is what is needed, wherever the cache lies.
+//! Cache eviction, copied caches, and stamps and dependency files for build tools.
 
 mod build_tools;
 mod copied;
-mod swept;
+mod eviction;
 
 use equilux_tests::workshop::{Ended, Workshop};
 use serde_json::Value;

@@ -38,6 +38,8 @@ fn files_made_with(tolerance: &str, threads: &str, workshop: &Workshop) -> BTree
         "assemble",
         &[
             "scene.glb",
+            "--pictures",
+            "rounds",
             "--element-size",
             "0.5",
             "--bisect",

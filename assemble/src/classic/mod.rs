@@ -26,7 +26,7 @@ use equilux_bake::oven::prepare::{Division, Preparation, Prepared, PreparedPart,
 use equilux_bake::oven::{Baked, geometry_manifest};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{
-    Answers, BakedPart, Error, LightUnits, LocalEquilibrium, Optics, Result, Rgb, Rows, Store,
+    BakedPart, BoundaryResponses, Error, LightUnits, LocalEquilibrium, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DVec3;
 use serde::Serialize;
@@ -214,7 +214,7 @@ fn without_light(part: PreparedPart) -> Baked {
         solver: part.solver,
         radiosity: part.optics.emission.clone(),
         factors: None,
-        answers: Answers::default(),
+        answers: BoundaryResponses::default(),
     };
     Baked {
         part: BakedPart {

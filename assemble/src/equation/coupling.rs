@@ -7,8 +7,10 @@ use crate::equation::intruders::intruders;
 use crate::equation::stale_block::StaleBlock;
 use crate::placed_parts::PlacedParts;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::cached::{Made, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::oven::keys::{CORRECTED, COUPLING, Known, Seen, placed_manifest, seen_from, sky_manifest};
+use equilux_bake::oven::cached::{NewValue, Origin, cached, cached_or_revised, foreseen};
+use equilux_bake::oven::keys::{
+    BakedKey, CORRECTED, COUPLING, RelativePlacement, placed_manifest, placements_from, sky_manifest,
+};
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
@@ -221,8 +223,8 @@ impl Coupler<'_> {
         let part = instances[instance].part;
         let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(MAX_TWIN_CANDIDATES);
         let parts = self.part_senders();
-        let seen_by = |k: usize| seen_from(instances, &parts, k).map(|(_, seen)| seen);
-        let here: HashSet<Seen> = seen_by(instance).collect();
+        let seen_by = |k: usize| placements_from(instances, &parts, k).map(|(_, seen)| seen);
+        let here: HashSet<RelativePlacement> = seen_by(instance).collect();
         let common = |l: &usize| seen_by(*l).filter(|seen| here.contains(seen)).count();
         let twin = before.max_by_key(common)?;
         let manifest = self.manifest(twin, what);
@@ -252,8 +254,8 @@ impl Coupler<'_> {
         placed_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance, what)
     }
 
-    fn part_senders(&self) -> Vec<Known> {
-        let known = |part: &Baked| Known { key: part.key, senders: part.part.geometry.clusters.nodes() };
+    fn part_senders(&self) -> Vec<BakedKey> {
+        let known = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.clusters.nodes() };
         self.placed.parts.iter().map(known).collect()
     }
 }
@@ -271,13 +273,13 @@ struct MadeBlock {
 
 /// The cache entry for a computed block: complete, revised from a stale block, or identical to the entry under the
 /// stale block's key.
-fn made(timed: Timed, stale: Option<Option<Key>>) -> Made<Rows> {
+fn made(timed: Timed, stale: Option<Option<Key>>) -> NewValue<Rows> {
     match stale {
-        None => Made::Whole(timed.block),
-        Some(Some(key)) if timed.is_unchanged => Made::AsUnder(key, timed.block),
+        None => NewValue::Whole(timed.block),
+        Some(Some(key)) if timed.is_unchanged => NewValue::AsUnder(key, timed.block),
         Some(_) => {
             let share = 100.0 * timed.computed as f64 / timed.block.stored().max(1) as f64;
-            Made::Revised(timed.block, format!("{share:.1} % of its form factors"))
+            NewValue::Revised(timed.block, format!("{share:.1} % of its form factors"))
         }
     }
 }

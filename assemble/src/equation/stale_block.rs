@@ -3,7 +3,7 @@
 //! block up to date.
 
 use crate::placed_parts::PlacedParts;
-use equilux_bake::oven::keys::{Seen, seen_in};
+use equilux_bake::oven::keys::{RelativePlacement, placements_in};
 use equilux_bake::treecode::revision::{Change, Revision};
 use equilux_formats::{BakedGeometry, Geometry, Key, Lookup, Manifest, Rows, Store};
 use glam::DAffine3;
@@ -50,7 +50,7 @@ impl<'a> StaleBlock<'a> {
         if !last.is_alike(current) {
             return None;
         }
-        let (before, now) = (seen_in(last)?, seen_in(current)?);
+        let (before, now) = (placements_in(last)?, placements_in(current)?);
         let stays = stays(&before, &now);
         let new = (0..now.len()).filter(|n| !stays.contains(&Some(*n)));
         let gone = (0..before.len()).filter(|&b| stays[b].is_none());
@@ -88,9 +88,9 @@ impl<'a> StaleBlock<'a> {
 }
 
 /// For each earlier instance, the current instance with the same part and placement, if there is one.
-fn stays(before: &[(usize, Seen)], now: &[(usize, Seen)]) -> Vec<Option<usize>> {
+fn stays(before: &[(usize, RelativePlacement)], now: &[(usize, RelativePlacement)]) -> Vec<Option<usize>> {
     let mut free: Vec<bool> = vec![true; now.len()];
-    let mut find = |seen: &Seen| {
+    let mut find = |seen: &RelativePlacement| {
         let found = (0..now.len()).find(|&n| free[n] && now[n].1 == *seen)?;
         free[found] = false;
         Some(found)
@@ -123,8 +123,8 @@ fn add_part(
 fn senders(
     placed: &PlacedParts,
     instance: usize,
-    before: &[(usize, Seen)],
-    now: &[(usize, Seen)],
+    before: &[(usize, RelativePlacement)],
+    now: &[(usize, RelativePlacement)],
     stays: &[Option<usize>],
 ) -> Vec<Option<u32>> {
     let nodes_of = |k: usize| placed.world.nodes_of(k).map(|node| Some(node as u32));

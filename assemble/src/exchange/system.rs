@@ -1,7 +1,7 @@
 //! One instance's block row of the radiosity equation B = E + ρFB, and its residual.
 
 use equilux_bake::equilibrium::LocalSystem;
-use equilux_formats::{Answers, ClusterTree, Optics, Rgb, Rows};
+use equilux_formats::{BoundaryResponses, ClusterTree, Optics, Rgb, Rows};
 
 /// One instance's block row of the equation.
 #[derive(Debug)]
@@ -17,7 +17,7 @@ pub struct InstanceSystem<'a> {
     /// The local solver of the instance.
     pub local: LocalSystem<'a>,
     /// Boundary responses: radiosities caused by light from outside.
-    pub answers: &'a Answers,
+    pub answers: &'a BoundaryResponses,
     /// Area of its elements in the scene, m².
     pub areas: Vec<f64>,
 }

@@ -6,6 +6,7 @@
 //! previous one, and all later changes together are about as large as the last (Richardson 1911). No work is lost:
 //! the last trial is the chosen one, and its form factors are in the cache.
 
+use crate::equation::environment::Environment;
 use crate::exchange::listener::Unobserved;
 use crate::gather::points::{Place, PointLight, light};
 use crate::report::advice::{Advice, Trial};
@@ -68,6 +69,7 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
     let scene = import_scene(&job.scene)?;
     job.check(&scene)?;
     job.tables(DVec3::ZERO)?;
+    let environment = job.settings.environment()?;
     let store = Store::open(&job.settings.cache)?;
     let tolerance = (TOLERANCE_SHARE * target).min(MAX_TOLERANCE);
     let with = |element_size| {
@@ -80,7 +82,7 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
         unreachable!("a default size is a length")
     };
     let places = spread(&prepared);
-    let trials = Trials { scene: &scene, store: &store, places: &places, monitor };
+    let trials = Trials { scene: &scene, environment: &environment, store: &store, places: &places, monitor };
     let mut advice = Advice {
         target,
         met: false,
@@ -156,6 +158,7 @@ fn spread(prepared: &Prepared) -> Vec<Place> {
 /// The inputs that all trials share.
 struct Trials<'a> {
     scene: &'a Scene,
+    environment: &'a Environment,
     store: &'a Store,
     places: &'a [Place],
     monitor: &'a Monitor,
@@ -164,9 +167,9 @@ struct Trials<'a> {
 impl Trials<'_> {
     /// Solve the scene with `settings`, and gather light at the points.
     fn sample(&self, settings: &SolveSettings) -> Result<SampledLight> {
-        let Self { scene, store, places, monitor } = *self;
+        let Self { scene, environment, store, places, monitor } = *self;
         let prepared = prepare(scene, &settings.preparation)?;
-        let solved = solve_prepared(scene, prepared, settings, store, monitor, &Unobserved)?;
+        let solved = solve_prepared(scene, prepared, environment, settings, store, monitor, &Unobserved)?;
         if monitor.stopped() {
             return Err(Error::Stopped);
         }

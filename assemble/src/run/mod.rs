@@ -25,7 +25,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::batch::damage_notes;
 use equilux_bake::oven::depfile;
 use equilux_bake::oven::prepare::{Prepared, lost_digits_note, prepare};
-use equilux_formats::{Result, Scene, Store, Swept, unless_stopped};
+use equilux_formats::{Evicted, Result, Scene, Store, unless_stopped};
 use expected_work::expected_work;
 use job::Job;
 use std::path::Path;
@@ -44,13 +44,14 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let (scene, prepared) = opened(job)?;
     let atlas = requests.lightmaps.map(|options| Atlas::new(&scene, options.texel_size)).transpose()?;
     let (places, against) = job.tables(scene.origin)?;
+    let environment = settings.environment()?;
     let store = Store::open(&settings.cache)?;
     let element_size = prepared.element_size.to_string();
     let has_clusters = settings.preparation.resolution.opening > 0.0;
     let places = places.as_deref();
     let elements = prepared.elements();
     monitor.expect(expected_work(requests, elements, has_clusters, atlas.as_ref(), places));
-    let solved = solve_prepared(&scene, prepared, settings, &store, monitor, observer)?;
+    let solved = solve_prepared(&scene, prepared, &environment, settings, &store, monitor, observer)?;
     let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let (equation, outcome) = (&solved.equation, &solved.outcome);
     let (placed, systems) = (&equation.placed, equation.systems());
@@ -72,7 +73,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     if let Some(path) = &requests.depfile {
         depfile::write(path, &requests.folder.join(&scene.name).join(RESULT), &scene.sources)?;
     }
-    let swept = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
+    let evicted = job.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     let sources = ReportSources {
         equation,
         systems: &systems,
@@ -90,7 +91,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     (report.seconds.points, report.seconds.points_cpu) = (point_time.as_secs_f64(), point_cpu);
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
-    let last = dropped_note(swept).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
+    let last = dropped_note(evicted).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
     let lights = [
         light_notes(&scene, settings.light_units, settings.sky.as_ref()),
         unlit_notes(&scene, &equation.direct.unlit, placed, &systems),
@@ -115,7 +116,7 @@ fn unverified_note(job: &Job, classic: Option<&Classic>) -> Option<String> {
         .then(|| "stopped: the classic matrix was not computed, so nothing was compared".to_owned())
 }
 
-fn dropped_note(swept: Option<Swept>) -> Option<String> {
-    let Swept { dropped, .. } = swept.filter(|swept| swept.dropped.files > 0)?;
+fn dropped_note(evicted: Option<Evicted>) -> Option<String> {
+    let Evicted { dropped, .. } = evicted.filter(|evicted| evicted.dropped.files > 0)?;
     Some(format!("files dropped from the cache: {}, of {} bytes", dropped.files, dropped.bytes))
 }

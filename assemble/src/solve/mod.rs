@@ -67,8 +67,9 @@ impl Solved {
 pub fn solve(file: &Path, settings: &SolveSettings) -> Result<Solved> {
     let scene = import_scene(file)?;
     let prepared = prepare(&scene, &settings.preparation)?;
+    let environment = settings.environment()?;
     let store = Store::open(&settings.cache)?;
-    solve_prepared(&scene, prepared, settings, &store, &Monitor::default(), &Unobserved)
+    solve_prepared(&scene, prepared, &environment, settings, &store, &Monitor::default(), &Unobserved)
 }
 
 /// Like [`solve`], for a scene that is already divided into elements, reporting progress to `monitor` and `observer`.
@@ -77,15 +78,15 @@ pub fn solve(file: &Path, settings: &SolveSettings) -> Result<Solved> {
 pub fn solve_prepared(
     scene: &Scene,
     prepared: Prepared,
+    environment: &Environment,
     settings: &SolveSettings,
     store: &Store,
     monitor: &Monitor,
     observer: &dyn Observer,
 ) -> Result<Solved> {
-    let environment = Environment::read(settings.light_units, settings.sky.as_ref())?;
     let (file, resolution) = (&scene.file, settings.preparation.resolution);
     let oven = Oven { store, file, resolution, monitor };
-    let equation = Equation::new(&oven, scene, prepared, &environment, observer)?;
+    let equation = Equation::new(&oven, scene, prepared, environment, observer)?;
     let Equation { placed, coupled, optics, direct, .. } = &equation;
     let systems = equation.systems();
     refuse_endless_light(placed, &systems, &equation.driven_optics(), file)?;

@@ -1,9 +1,10 @@
 //! Settings of a solution: elements and parts, form factors, lights, and the exchange.
 
+use crate::equation::environment::Environment;
 use crate::exchange::settings::{Goal, Method};
 use crate::gather::sky::Sky;
 use equilux_bake::oven::prepare::Preparation;
-use equilux_formats::LightUnits;
+use equilux_formats::{LightUnits, Result};
 use std::path::PathBuf;
 
 /// Settings of a solution. The default is that of the command line.
@@ -37,5 +38,12 @@ impl Default for SolveSettings {
             goal: Goal::default(),
             warm: false,
         }
+    }
+}
+
+impl SolveSettings {
+    /// The light from outside the scene. Fails if the picture of the sky cannot be read.
+    pub fn environment(&self) -> Result<Environment> {
+        Environment::read(self.light_units, self.sky.as_ref())
     }
 }

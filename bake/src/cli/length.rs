@@ -1,6 +1,6 @@
 //! Lengths on the command line: plain numbers, metres. The error for `10cm` names what to write instead.
 
-/// Units of length: how many of them are how many metres.
+/// Units of length: (name, n, m) means that n of them are m metres.
 const UNITS: [(&str, f64, f64); 9] = [
     ("um", 1e6, 1.0),
     ("mm", 1e3, 1.0),
@@ -13,8 +13,8 @@ const UNITS: [(&str, f64, f64); 9] = [
     ("yd", 1e4, 9144.0),
 ];
 
-/// The end of a message about lengths that cannot be read: what to write instead of `text`, which holds one or several
-/// lengths such as `10cm`, `x=2ft` or `1m,2m,3m`. Empty unless they have units.
+/// The remedy for a message about lengths that cannot be parsed: `text`, one or several lengths such as `10cm`, `x=2ft`
+/// or `1m,2m,3m`, in metres. Empty unless they have units.
 pub fn in_metres(text: &str) -> String {
     let converted: Option<Vec<String>> = text.split(',').map(convert).collect();
     match converted.map(|parts| parts.join(",")) {

@@ -13,7 +13,7 @@ use crate::oven::keys::drop_unused;
 use crate::oven::{depfile, stamp};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
-use equilux_formats::{Store, Swept};
+use equilux_formats::{Evicted, Store};
 use indicatif::DecimalBytes;
 use options::SceneOptions;
 use program::tell;
@@ -34,25 +34,25 @@ struct Arguments {
     inputs: Vec<PathBuf>,
     #[command(flatten)]
     options: SceneOptions,
-    /// Say in a sentence for every part why it was or was not baked
+    /// Print for every part why it was or was not baked
     #[arg(long)]
     explain: bool,
-    /// Touch this file when everything is baked, for a build tool to watch
+    /// Touch this file when everything is baked, for build tools
     #[arg(long, value_name = "FILE")]
     stamp: Option<PathBuf>,
-    /// Write for Make, Ninja or CMake which files were read; the target in it is the stamp
+    /// Write the files that were read as dependencies of the stamp, for Make, Ninja or CMake
     #[arg(long, value_name = "FILE", requires = "stamp")]
     depfile: Option<PathBuf>,
-    /// Bake nothing; drop from the cache what these scenes, baked or assembled with these options, do not use. Scenes
-    /// with other options lose theirs
+    /// Bake nothing; remove from the cache what these scenes, with these options, do not use. Results for other scenes
+    /// or options are removed too
     #[arg(long, conflicts_with_all = ["explain", "stamp", "cache_limit"])]
     gc: bool,
 }
 
-/// What to do other than bake.
+/// Subcommands.
 #[derive(Subcommand)]
 enum Task {
-    /// Print what makes a shell complete this program's options
+    /// Print a shell completion script
     Completions {
         /// The shell
         shell: Shell,
@@ -86,12 +86,12 @@ fn work(arguments: Arguments) -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(matches!(&done, Done::Baked(batch) if batch.failed()))))
 }
 
-/// What was asked for and done.
+/// The result of a run.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Done {
     Baked(Batch),
-    Swept(Swept),
+    Evicted(Evicted),
 }
 
 fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Done> {
@@ -101,10 +101,10 @@ fn run(arguments: &Arguments, monitor: &Monitor) -> anyhow::Result<Done> {
     [&arguments.stamp, &arguments.depfile].into_iter().flatten().try_for_each(|path| stamp::check(path))?;
     let store = Store::open(&options.cache)?;
     if arguments.gc {
-        return Ok(Done::Swept(drop_unused(&files, &options.preparation(), &store)?));
+        return Ok(Done::Evicted(drop_unused(&files, &options.preparation(), &store)?));
     }
     let mut batch = bake_files(&files, &options.preparation(), &store, monitor);
-    batch.swept = options.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
+    batch.evicted = options.cache_limit.map(|bytes| store.limit(bytes)).transpose()?;
     if let Some(stamp) = arguments.stamp.as_ref().filter(|_| !batch.failed()) {
         if let Some(path) = &arguments.depfile {
             depfile::write(path, stamp, &batch.sources())?;
@@ -121,7 +121,7 @@ fn print(arguments: &Arguments, done: &Done) -> Result<(), program::Unprinted> {
     program::print(&match done {
         done if arguments.options.json => serde_json::to_string(done).expect("a batch is plain data") + "\n",
         Done::Baked(batch) => batch_text(arguments, batch),
-        Done::Swept(swept) => swept_line(&arguments.options.cache, swept),
+        Done::Evicted(evicted) => eviction_line(&arguments.options.cache, evicted),
     })
 }
 
@@ -147,8 +147,8 @@ fn batch_text(arguments: &Arguments, batch: &Batch) -> String {
             }
         }
     }
-    if let Some(swept) = &batch.swept {
-        text += &swept_line(cache, swept);
+    if let Some(evicted) = &batch.evicted {
+        text += &eviction_line(cache, evicted);
     }
     text + &format!(
         "{} in {}: {} baked, {} reused; {:.2} s; cache {}\n",
@@ -161,8 +161,8 @@ fn batch_text(arguments: &Arguments, batch: &Batch) -> String {
     )
 }
 
-fn swept_line(cache: &Path, swept: &Swept) -> String {
-    let [dropped, kept] = [swept.dropped, swept.kept]
+fn eviction_line(cache: &Path, evicted: &Evicted) -> String {
+    let [dropped, kept] = [evicted.dropped, evicted.kept]
         .map(|tally| format!("{} ({})", count(tally.files, "file"), DecimalBytes(tally.bytes)));
     format!("cache {}: dropped {dropped}, kept {kept}\n", cache.display())
 }

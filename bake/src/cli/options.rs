@@ -1,4 +1,4 @@
-//! Options that both programs understand.
+//! Options of both programs.
 
 use super::length::in_metres;
 use crate::elements::ElementSize;
@@ -12,24 +12,24 @@ use std::path::PathBuf;
 /// How a scene becomes parts and elements, and where the cache is.
 #[derive(Args, Debug, Clone)]
 pub struct SceneOptions {
-    /// Folder that keeps what was computed; it can be copied to another machine
+    /// Cache folder; it can be copied to another machine
     #[arg(long, value_name = "DIR", default_value = ".equilux")]
     pub cache: PathBuf,
-    /// In the end drop from the cache what was not used for longest until it holds at most this much, such as 2GB; what this
-    /// run used stays
+    /// After the run, remove the least recently used files from the cache until it has at most this size, such as 2GB;
+    /// files used by this run are kept
     #[arg(long, value_name = "SIZE", value_parser = super::size::parse)]
     pub cache_limit: Option<u64>,
     /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
     #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]
     pub element_size: Option<ElementSize>,
-    /// About how much the answer may err, relative to its mean, because small, far clusters of elements have one exact form
-    /// factor; 0 keeps that of every element
+    /// Approximate relative error of the result caused by merging distant elements into clusters with one exact form
+    /// factor; 0 keeps a form factor for every element
     #[arg(long, value_name = "EPS", default_value_t = TOLERANCE, value_parser = tolerance)]
     pub tolerance: f64,
-    /// Make parts by planes: this many cells, each time the largest cut at the median of its longest axis
+    /// Divide the scene into this many parts: repeatedly halve the largest at the median of its longest axis
     #[arg(long, value_name = "N", conflicts_with = "cut", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub bisect: Option<u32>,
-    /// Make parts by this plane, such as x=1.5; may be given several times
+    /// Divide the scene into parts by this plane, such as x=1.5; may be repeated
     #[arg(long, value_name = "AXIS=METRES", value_parser = cut)]
     pub cut: Vec<Cut>,
     /// Solver for each part's local equilibrium [default: direct for small parts, iterative for large]
@@ -59,7 +59,7 @@ impl SceneOptions {
         }
     }
 
-    /// Use the number of threads asked for.
+    /// Limits the thread pool to [`Self::threads`].
     pub fn set_threads(&self) -> anyhow::Result<()> {
         if let Some(threads) = self.threads {
             rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global()?;
@@ -68,7 +68,7 @@ impl SceneOptions {
     }
 }
 
-/// Reads an element size: metres, or `mesh`.
+/// Parses an element size: metres, or `mesh`.
 pub fn element_size(text: &str) -> Result<ElementSize, String> {
     if text == "mesh" {
         return Ok(ElementSize::Mesh);

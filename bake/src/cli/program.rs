@@ -1,7 +1,7 @@
-//! What both programs have in common: reading the command line, printing, and ending with an exit code. 0: done.
-//! 1: something is wrong with an input or the environment. 2: the command line is wrong. 101: the program is.
+//! Code shared by both programs: parsing the command line, printing, and exit codes. 0: success. 1: an input or the
+//! environment is faulty. 2: the command line is faulty. 101: internal error.
 //!
-//! Standard output may be closed or full at any time, which `print!` and `eprintln!` answer with a panic.
+//! Standard output may be closed or full at any time, where `print!` and `eprintln!` panic.
 
 use clap::error::ErrorKind;
 use clap::{Command, CommandFactory, Parser};
@@ -14,7 +14,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Runs a program: `work` gets its arguments and says how it ended.
+/// Runs a program. `work` receives its arguments and returns its exit code.
 pub fn run<P: Parser>(work: impl FnOnce(P) -> anyhow::Result<ExitCode>) -> ExitCode {
     report_panics_briefly();
     let arguments = match parse(std::env::args_os().collect()) {
@@ -44,7 +44,7 @@ pub fn tell(message: impl Display) {
     let _ = writeln!(io::stderr(), "{message}");
 }
 
-/// The script that completes the options of the program `name` in a shell.
+/// The shell completion script for the program `name`.
 pub fn completions<P: CommandFactory>(shell: Shell, name: &str) -> String {
     let mut script = Vec::new();
     clap_complete::generate(shell, &mut P::command(), name, &mut script);
@@ -64,7 +64,7 @@ impl Display for Unprinted {
 impl std::error::Error for Unprinted {}
 
 impl Unprinted {
-    /// A reader that has seen enough, such as `head -1`, ends the program quietly: its work is done.
+    /// If the reader closed the pipe, as `head -1` does, the program ends without an error.
     fn end(&self) -> ExitCode {
         if self.0.kind() == io::ErrorKind::BrokenPipe {
             return ExitCode::SUCCESS;
@@ -76,7 +76,7 @@ impl Unprinted {
     }
 }
 
-/// The arguments, or what clap answers to them: help, a version, or what is wrong.
+/// The arguments, or the help, version or error message of clap.
 fn parse<P: Parser>(arguments: Vec<OsString>) -> Result<P, clap::Error> {
     let mut command = P::command();
     if let Some(name) = arguments.get(1).and_then(|first| first.to_str())
@@ -88,10 +88,10 @@ fn parse<P: Parser>(arguments: Vec<OsString>) -> Result<P, clap::Error> {
     P::try_parse_from(arguments)
 }
 
-/// How alike a name and a command must be for one to be meant by the other: a letter of four may differ.
+/// The least similarity of a name to a command for a suggestion: one letter of four may differ.
 const ALIKE: f64 = 0.7;
 
-/// The subcommand that `name` seems to mean if it is neither one itself nor a file.
+/// The subcommand most similar to `name`, if `name` is neither a subcommand nor a file.
 fn meant(command: &Command, name: &str) -> Option<String> {
     let names = || command.get_subcommands().map(Command::get_name).chain(["help"]);
     if name.starts_with('-')
@@ -106,7 +106,7 @@ fn meant(command: &Command, name: &str) -> Option<String> {
     (likeness(best) >= ALIKE).then(|| best.to_owned())
 }
 
-/// Prints what clap answers.
+/// Prints the message of clap and returns its exit code.
 fn answered(answer: &clap::Error) -> ExitCode {
     let printed = answer.print().and_then(|()| io::stdout().flush());
     match printed {
@@ -115,11 +115,11 @@ fn answered(answer: &clap::Error) -> ExitCode {
     }
 }
 
-/// Panics are faults of the program. A few lines say so, once; RUST_BACKTRACE=full adds where.
+/// Panics are internal errors. Reports the first one in two lines; RUST_BACKTRACE=full adds a backtrace.
 fn report_panics_briefly() {
     static REPORTED: AtomicBool = AtomicBool::new(false);
     std::panic::set_hook(Box::new(|panic| {
-        // Other threads stumble over the same fault.
+        // Other threads often panic for the same reason.
         if REPORTED.swap(true, Ordering::Relaxed) {
             return;
         }
@@ -134,10 +134,10 @@ fn report_panics_briefly() {
     }));
 }
 
-/// No message of a panic is longer, in characters.
+/// Longest message of a panic, in characters.
 const LONGEST: usize = 300;
 
-/// What is said about a panic with this message at this place.
+/// The report of a panic with this message at this source location.
 fn fault(message: &str, place: &str) -> String {
     let mut line: String = message.lines().next().unwrap_or_default().chars().take(LONGEST).collect();
     if line.len() < message.len() {

@@ -1,5 +1,5 @@
-//! Progress for a person on stderr: one line for the whole run, drawn again and again on a terminal, printed every few
-//! seconds elsewhere. Ctrl-C requests an end where results are whole; a second one ends the program at once.
+//! Progress on stderr: one line for the whole run, updated in place on a terminal, printed every few seconds elsewhere.
+//! Ctrl-C requests a stop at the next point where results are complete; a second Ctrl-C ends the program at once.
 
 use super::program::tell;
 use crate::monitor::{Monitor, Progress};
@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 pub fn monitor_for_program() -> Arc<Monitor> {
     let monitor = Arc::new(Monitor::default());
     let on_interrupt = Arc::clone(&monitor);
-    // Without a handler Ctrl-C ends the program at once: a pity, but nothing is lost, for files are written whole.
+    // Without a handler, Ctrl-C ends the program at once. That is safe because files are written atomically.
     let _ = ctrlc::set_handler(move || {
         if on_interrupt.stopped() {
             std::process::exit(130);
@@ -31,19 +31,19 @@ pub struct Display {
     thread: JoinHandle<()>,
 }
 
-/// The line on a terminal is drawn this often.
+/// Interval between updates on a terminal.
 const TICK: Duration = Duration::from_millis(100);
 
-/// A terminal shows nothing of what takes less time than this.
+/// A terminal shows no progress for shorter runs.
 const TERMINAL_FROM: Duration = Duration::from_secs(1);
 
-/// Without a terminal, nothing is printed of what takes less time than this.
+/// Without a terminal, no progress is printed for shorter runs.
 const LINES_FROM: Duration = Duration::from_secs(10);
 
-/// Without a terminal, a line is printed this often.
+/// Without a terminal, interval between lines.
 const LINES_EVERY: Duration = Duration::from_secs(5);
 
-/// Show the monitor's progress until the display is finished.
+/// Shows the monitor's progress until [`Display::finish`].
 pub fn show(monitor: &Arc<Monitor>) -> Display {
     let done = Arc::new(AtomicBool::new(false));
     let (monitor, ended) = (Arc::clone(monitor), Arc::clone(&done));
@@ -52,11 +52,11 @@ pub fn show(monitor: &Arc<Monitor>) -> Display {
 }
 
 impl Display {
-    /// Take the line away.
+    /// Removes the line and ends the thread.
     pub fn finish(self) {
         self.done.store(true, Ordering::Relaxed);
         self.thread.thread().unpark();
-        // A panic there only concerns the drawing.
+        // A panic of the drawing thread is ignored.
         let _ = self.thread.join();
     }
 }
@@ -79,7 +79,7 @@ fn draw(monitor: &Monitor, ended: &AtomicBool) {
     }
 }
 
-/// The bar is drawn this finely.
+/// Resolution of the bar.
 const STEPS_OF_BAR: f64 = 1000.0;
 
 fn new_bar() -> ProgressBar {
@@ -102,7 +102,7 @@ fn print_lines(monitor: &Monitor, ended: &AtomicBool) {
     }
 }
 
-/// The share that is done, the time left for all of it, and the current step.
+/// The completed share, the remaining time, and the current step.
 fn line(progress: &Progress) -> String {
     let Progress { step, done, share, left } = progress;
     let left = left.map_or(String::new(), |left| format!(", about {} left", rounded(left)));
@@ -110,7 +110,7 @@ fn line(progress: &Progress) -> String {
     format!("{:3.0} %{left}: {}{count}", (100.0 * share).floor(), step.what)
 }
 
-/// A time of which a person needs one or two digits.
+/// A duration, rounded to one or two digits.
 fn rounded(time: Duration) -> String {
     match time.as_secs() {
         0..60 => format!("{} s", time.as_secs() + 1),

@@ -1,6 +1,6 @@
-//! Sizes and counts as people write and read them: `2GB`, `512 MiB`, `1 file`.
+//! Parses sizes such as `2GB` and `512 MiB`, and formats counts such as `1 file`.
 
-/// Units and how many bytes they are, for comparison without case.
+/// Units in lower case, and their sizes in bytes.
 const UNITS: [(&str, f64); 8] = [
     ("b", 1.0),
     ("kb", 1e3),
@@ -12,14 +12,14 @@ const UNITS: [(&str, f64); 8] = [
     ("gib", 1073741824.0),
 ];
 
-/// The number of bytes that `text` says.
+/// The number of bytes that `text` denotes.
 pub fn parse(text: &str) -> Result<u64, String> {
     let unit_at = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
     let (number, unit) = text.split_at(unit_at);
     if unit.is_empty() && number.trim().parse::<f64>().is_ok_and(|number| number > 0.0) {
         return Err(format!("a size has a unit: write {0}GB, {0}MB or {0}B", number.trim()));
     }
-    // No bytes are none in any unit.
+    // Only zero needs no unit.
     let unit = if unit.is_empty() { "b" } else { unit };
     let scale = UNITS.iter().find(|(name, _)| unit.eq_ignore_ascii_case(name)).map(|(_, scale)| scale);
     match (number.trim().parse::<f64>(), scale) {

@@ -1,13 +1,13 @@
-//! Parts by planes, as the paper makes them: a plane cuts all elements and faces into what lies on either side.
+//! Divides a geometry into parts by planes, as in the paper: a plane cuts all elements and faces.
 //!
-//! The cells are convex, so nothing foreign can stand between two points of one of them: a cell's own block of form
-//! factors is exact inside the whole. Debelov & Sevastyanov, §2.
+//! The cells are convex, so no element of another cell can lie between two points of one cell: the self block of a cell is
+//! exact within the whole. Debelov & Sevastyanov, §2.
 
 use crate::elements::clusters;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::polygon::{Side, clip};
+use crate::geometry::polygon::{Side, clip, quads_and_triangles};
 use crate::geometry::tolerance::ON_CUT;
-use equilux_formats::{Corners, Element, Face, FaceId, Geometry};
+use equilux_formats::{Element, Face, FaceId, Geometry};
 use glam::DVec3;
 
 /// A plane across one of the coordinate axes.
@@ -15,7 +15,7 @@ use glam::DVec3;
 pub struct Cut {
     /// 0, 1, 2 for x, y, z.
     pub axis: usize,
-    /// Where on the axis, metres.
+    /// Position on the axis, metres.
     pub offset: f64,
 }
 
@@ -28,7 +28,7 @@ impl std::fmt::Display for Cut {
 impl std::str::FromStr for Cut {
     type Err = String;
 
-    /// Reads `x=1.5`.
+    /// Parses `x=1.5`.
     fn from_str(text: &str) -> Result<Self, String> {
         let malformed = || format!("`{text}` is no plane; write an axis and a place on it, such as x=1.5");
         let (axis, offset) = text.split_once('=').ok_or_else(malformed)?;
@@ -38,7 +38,7 @@ impl std::str::FromStr for Cut {
     }
 }
 
-/// Cut into `count` cells, each time the cell with the most elements at the median of its longest axis.
+/// Cuts a geometry into `count` cells: repeatedly halves the cell with the most elements at the median of its longest axis.
 pub fn bisect(whole: Geometry, count: usize) -> Vec<Geometry> {
     let mut cells = vec![whole];
     while cells.len() < count {
@@ -56,7 +56,7 @@ pub fn bisect(whole: Geometry, count: usize) -> Vec<Geometry> {
     cells
 }
 
-/// Cut every cell by every plane; empty cells are left out.
+/// Cuts a geometry by every plane and drops empty cells.
 pub fn cut_all(whole: Geometry, planes: &[Cut]) -> Vec<Geometry> {
     let mut cells = vec![whole];
     for &plane in planes {
@@ -82,8 +82,8 @@ fn bounds(geometry: &Geometry) -> Aabb {
     Aabb::around(geometry.elements.iter().flat_map(|e| e.corners.as_slice()))
 }
 
-/// What lies below and above the plane. Elements and faces across it are clipped; an element in the plane goes to the
-/// side it looks at, and the faces of both sides keep what blocks light there.
+/// The parts of a geometry below and above a plane. Elements and faces that cross it are clipped. An element in the
+/// plane belongs to the side it faces, and the faces of both sides keep what blocks light there.
 pub fn cut(geometry: &Geometry, plane: Cut) -> [Geometry; 2] {
     let tolerance = ON_CUT * bounds(geometry).size().max_element();
     [-1.0, 1.0].map(|side| {
@@ -107,7 +107,7 @@ fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f
             match clip(corners, &height) {
                 Side::All => vec![element.corners],
                 Side::None => vec![],
-                Side::Piece(piece) => split_into_corners(&piece),
+                Side::Piece(piece) => quads_and_triangles(&piece),
             }
         };
         for piece in pieces {
@@ -115,7 +115,7 @@ fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f
                 faces.push(clip_face(&geometry.faces[element.face.index()], &height));
                 FaceId::from_index(faces.len() - 1)
             });
-            // The whole element's normal is known better than that of a sliver of it.
+            // The normal of the whole element is more accurate than that of a sliver of it.
             let piece = Element::new(piece, element.material, face);
             elements.push(Element { normal: element.normal, ..piece });
         }
@@ -130,25 +130,15 @@ fn clip_face(face: &Face, height: impl Fn(DVec3) -> f64) -> Face {
     }
 }
 
-/// Three to five corners as elements of at most four.
-fn split_into_corners(piece: &[DVec3]) -> Vec<Corners> {
-    match *piece {
-        [a, b, c] => vec![Corners::triangle([a, b, c])],
-        [a, b, c, d] => vec![Corners::quad([a, b, c, d])],
-        [a, b, c, d, e] => vec![Corners::quad([a, b, c, d]), Corners::triangle([a, d, e])],
-        _ => unreachable!("a plane cuts at most one corner off a quad, leaving five, not {}", piece.len()),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use equilux_formats::MaterialId;
+    use equilux_formats::{Corners, MaterialId};
     use proptest::prelude::*;
 
     proptest! {
-        /// Planes through corners, beside them by rounding, and elsewhere, through triangles of any shape and the parallelograms
-        /// that they are halves of.
+        /// Planes through corners, beside them by rounding, and elsewhere, through triangles of any shape and the
+        /// parallelograms that they are halves of.
         #[test]
         fn cells_hold_elements_with_an_area_and_all_of_it(
             triangles in prop::collection::vec((prop::array::uniform3(prop::array::uniform3(-2.0..2.0_f64)), 0.0..1.0_f64), 1..6),

@@ -1,6 +1,6 @@
-//! Elements → their hierarchy. First the elements of each face side are halved along the longer side of the face until
-//! single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles; then the
-//! face sides themselves are halved by place.
+//! Builds the hierarchy of a part's elements. The elements of each face side are halved along the longer side of the
+//! face until single elements are left, at grid lines where there are any, so that clusters of a grid are rectangles.
+//! The face sides themselves are halved by position.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::tolerance::SAME_LINE;
@@ -9,17 +9,17 @@ use equilux_formats::{ClusterTree, Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// An element with something before it nearer than this share of its face's extent is covered, and clusters with others
-/// that are.
+/// An element counts as covered if an obstacle in front of it is nearer than this share of its face's extent. Covered
+/// elements share clusters only with covered elements.
 const COVERED: f64 = 0.1;
 
-/// The geometry of these elements and faces, elements put into the order of their hierarchy.
+/// The geometry of these elements and faces; elements are sorted into the order of their hierarchy.
 pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
     let (order, clusters) = hierarchy(&elements);
     Geometry { elements: order.iter().map(|&i| elements[i]).collect(), faces, clusters }
 }
 
-/// The hierarchy of these elements, and which of them comes where in it.
+/// The order of these elements in their hierarchy, as indices into `elements`, and the hierarchy.
 pub fn hierarchy(elements: &[Element]) -> (Vec<usize>, ClusterTree) {
     let mut builder = Builder { elements, order: vec![], clusters: vec![] };
     let mut sides = face_sides(elements);
@@ -29,9 +29,9 @@ pub fn hierarchy(elements: &[Element]) -> (Vec<usize>, ClusterTree) {
     let Builder { order, clusters, .. } = builder;
     let areas: Vec<f64> = order.iter().map(|&i| elements[i].area).collect();
     let count = order.len() as u32;
-    let number = |node: &Node| match *node {
-        Node::Element(position) => position,
-        Node::Cluster(number) => count + number,
+    let number = |node: &Branch| match *node {
+        Branch::Element(position) => position,
+        Branch::Cluster(number) => count + number,
     };
     let children = clusters.iter().map(|pair| [number(&pair[0]), number(&pair[1])]).collect();
     let clusters = ClusterTree::new(&areas, children).expect("the halves make a tree");
@@ -39,12 +39,12 @@ pub fn hierarchy(elements: &[Element]) -> (Vec<usize>, ClusterTree) {
 }
 
 /// Elements of one side of one face.
-struct Side {
+struct SideElements {
     elements: Vec<usize>,
     centre: DVec3,
 }
 
-fn face_sides(elements: &[Element]) -> Vec<Side> {
+fn face_sides(elements: &[Element]) -> Vec<SideElements> {
     let mut fronts: HashMap<u32, DVec3> = HashMap::new();
     let mut boxes: HashMap<u32, Aabb> = HashMap::new();
     for Element { face, normal, centroid, .. } in elements {
@@ -57,12 +57,12 @@ fn face_sides(elements: &[Element]) -> Vec<Side> {
         let near = COVERED * boxes[&e.face.0].diagonal();
         index.first_hit(e.centroid, e.normal).is_some_and(|hit| hit.distance < near)
     };
-    // What shares a face need not share its light: a lamp let into a ceiling, the floor beneath a crate.
+    // Elements of one face can differ in light: a lamp set into a ceiling, the floor beneath a crate.
     let key = |e: &Element| (e.face, fronts[&e.face.0].dot(e.normal) < 0.0, e.material, is_covered(e));
     let keys: Vec<_> = elements.iter().map(key).collect();
     let mut order: Vec<usize> = (0..elements.len()).collect();
     order.sort_by_key(|&i| (keys[i], i));
-    let side = |run: &[usize]| Side {
+    let side = |run: &[usize]| SideElements {
         elements: run.to_vec(),
         centre: run.iter().map(|&i| elements[i].centroid).sum::<DVec3>() / run.len() as f64,
     };
@@ -70,7 +70,7 @@ fn face_sides(elements: &[Element]) -> Vec<Side> {
 }
 
 #[derive(Clone, Copy)]
-enum Node {
+enum Branch {
     Element(u32),
     Cluster(u32),
 }
@@ -78,11 +78,11 @@ enum Node {
 struct Builder<'a> {
     elements: &'a [Element],
     order: Vec<usize>,
-    clusters: Vec<[Node; 2]>,
+    clusters: Vec<[Branch; 2]>,
 }
 
 impl Builder<'_> {
-    fn halve_sides(&mut self, sides: &mut [Side]) -> Node {
+    fn halve_sides(&mut self, sides: &mut [SideElements]) -> Branch {
         if let [side] = sides {
             let mut elements = std::mem::take(&mut side.elements);
             let (u, v) = face_axes(&self.elements[elements[0]]);
@@ -95,10 +95,10 @@ impl Builder<'_> {
         self.cluster(|builder| builder.halve_sides(left), |builder| builder.halve_sides(right))
     }
 
-    fn halve_elements(&mut self, elements: &mut [usize], axes: &[DVec3]) -> Node {
+    fn halve_elements(&mut self, elements: &mut [usize], axes: &[DVec3]) -> Branch {
         if let [element] = elements {
             self.order.push(*element);
-            return Node::Element(self.order.len() as u32 - 1);
+            return Branch::Element(self.order.len() as u32 - 1);
         }
         let all = self.elements;
         let axis = longest(axes, elements.iter().map(|&i| all[i].centroid));
@@ -114,15 +114,15 @@ impl Builder<'_> {
 
     fn cluster(
         &mut self,
-        left: impl FnOnce(&mut Self) -> Node,
-        right: impl FnOnce(&mut Self) -> Node,
-    ) -> Node {
+        left: impl FnOnce(&mut Self) -> Branch,
+        right: impl FnOnce(&mut Self) -> Branch,
+    ) -> Branch {
         let number = self.clusters.len();
-        // The number is taken before the halves take theirs; the halves themselves are known only afterwards.
-        self.clusters.push([Node::Cluster(0); 2]);
+        // Reserve the number before the halves reserve theirs; the halves are filled in afterwards.
+        self.clusters.push([Branch::Cluster(0); 2]);
         let pair = [left(self), right(self)];
         self.clusters[number] = pair;
-        Node::Cluster(number as u32)
+        Branch::Cluster(number as u32)
     }
 }
 
@@ -150,7 +150,7 @@ fn longest(axes: &[DVec3], places: impl Iterator<Item = DVec3> + Clone) -> DVec3
     best.0
 }
 
-/// Where to cut the sorted places: the grid line nearest to the middle, or the middle itself.
+/// Where to divide the sorted positions: at the grid line nearest to the middle, or else in the middle.
 fn grid_line(places: &[f64]) -> usize {
     let (count, middle) = (places.len(), places.len() / 2);
     let step = SAME_LINE * (places[count - 1] - places[0]);

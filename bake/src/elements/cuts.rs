@@ -1,23 +1,24 @@
-//! One triangle or quad → pieces with edges no longer than asked for, and how many these are before any is made.
+//! Cuts a triangle or quad into pieces whose edges are no longer than a given size, and counts the pieces beforehand.
 //!
-//! Quads become grids, triangles n² triangles similar to the whole. In slivers such pieces would be far smaller across than
-//! asked for, and as many as the square of the length: a sliver is cut into rows across its two long edges, each row into
-//! as many pieces as it is wide. No piece has more than four corners; their edges need not have equal ends.
+//! Quads become grids, triangles n² triangles similar to the whole. In a sliver, such pieces would be far narrower than
+//! the size, and their number would grow with the square of its length. A sliver is therefore cut into rows across its
+//! two long edges, and each row into as many pieces as its width requires. No piece has more than four corners.
+//! Neighbouring pieces need not share whole edges.
 
 use crate::geometry::tolerance::SAME_LENGTH;
 use equilux_formats::Corners;
 use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
-/// A triangle whose longest edge is more than so many times its height is a sliver.
+/// A triangle whose longest edge exceeds this multiple of its height is a sliver.
 const SLIVER: f64 = 4.0;
-/// A short edge may be so many times as long as the triangle is high for rows along it; else they would lean too much.
+/// Rows run along the shortest edge if it is at most this multiple of the triangle's height; longer edges make skewed rows.
 const LEANING: f64 = 2.0;
 /// How a triangle or quad, or a piece of one, is cut.
 enum Pattern {
-    /// So many quads along the first and along the second edge. They share corners to the bit.
+    /// The number of quads along the first and along the second edge. Neighbours share bit-identical corners.
     Grid([DVec3; 4], [usize; 2]),
-    /// The square of so many triangles similar to the whole. They share corners to the bit.
+    /// n² triangles similar to the whole; the field is n. Neighbours share bit-identical corners.
     Similar([DVec3; 3], usize),
     /// `rows` of equal height between the edges from the first corner to the others; row k, counted from 1 at that corner, has
     /// ⌈k · `widest` / `rows`⌉ pieces.
@@ -29,7 +30,8 @@ pub fn count(corners: &Corners, size: f64) -> u128 {
     total(&patterns(corners, size))
 }
 
-/// Cut a planar convex polygon into pieces whose edges are no longer than `size`, in its unit, and hand each to `emit`.
+/// Cuts a planar convex polygon into pieces whose edges are no longer than `size`, in the unit of the corners, and
+/// calls `emit` with each.
 pub fn cut(corners: &Corners, size: f64, mut emit: impl FnMut(Corners)) {
     patterns(corners, size).iter().for_each(|pattern| pattern.cut(&mut emit));
 }
@@ -42,7 +44,7 @@ fn patterns(corners: &Corners, size: f64) -> SmallVec<[Pattern; 4]> {
     }
 }
 
-/// A grid, or where the quad leans so much that one would be far too fine, the two triangles beside its shorter diagonal.
+/// A grid, or, where a skewed quad would need far too many pieces, the two triangles beside its shorter diagonal.
 fn of_quad([a, b, c, d]: [DVec3; 4], size: f64) -> SmallVec<[Pattern; 4]> {
     let (width, length) = ((b - a).length().max((c - d).length()), (d - a).length().max((c - b).length()));
     let [across, along] = [width, length].map(|edge| pieces(edge, size));
@@ -75,7 +77,7 @@ fn of_triangle([a, b, c]: [DVec3; 3], size: f64) -> SmallVec<[Pattern; 4]> {
     if widest == 1 || !exceeds(across, LEANING * height) {
         return smallvec![Pattern::Rows { corners: [tip, p, q], rows: count, widest }];
     }
-    // A flat one: rows along its height, from both ends of its longest edge.
+    // An obtuse sliver: rows along its height, from both ends of its longest edge.
     let foot = |to: DVec3, apex: DVec3| {
         let along = to - tip;
         tip + along * ((apex - tip).dot(along) / along.length_squared())
@@ -94,12 +96,12 @@ fn of_triangle([a, b, c]: [DVec3; 3], size: f64) -> SmallVec<[Pattern; 4]> {
     halves.into_iter().map(rows).collect()
 }
 
-/// Whether one length or area is larger than another by more than rounding.
+/// Whether one length or area exceeds another by more than rounding.
 fn exceeds(one: f64, other: f64) -> bool {
     one > other * (1.0 + SAME_LENGTH)
 }
 
-/// How many pieces an edge needs; an edge that is longer by rounding only does not need another.
+/// The number of pieces an edge needs. Rounding does not add a piece.
 fn pieces(length: f64, size: f64) -> usize {
     ((length / size) * (1.0 - SAME_LENGTH)).ceil().max(1.0) as usize
 }
@@ -135,7 +137,8 @@ fn greatest_common_divisor(a: u128, b: u128) -> u128 {
     if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
-/// The i-th of n equal steps from a to b. Exact at both ends, and exactly on a coordinate plane that both ends lie on.
+/// The point after i of n equal steps from a to b. Exact at both ends; if both ends lie on a coordinate plane, so does
+/// the point.
 fn step(a: DVec3, b: DVec3, i: usize, n: usize) -> DVec3 {
     if i == n { b } else { a + (b - a) * (i as f64 / n as f64) }
 }
@@ -214,8 +217,8 @@ mod tests {
     }
 
     proptest! {
-        /// The pieces are planar, convex and small enough, they are as many as was said, and tile the whole: any point lies
-        /// in one of them, and their areas add up.
+        /// The pieces are planar, convex and small enough, their number is the one counted, and they tile the whole:
+        /// any point lies in one of them, and their areas add up.
         #[test]
         fn pieces_tile_the_whole(whole in shape(), size in 0.05..3.0_f64, [s, t] in prop::array::uniform2(0.0..1.0_f64)) {
             prop_assume!(count(&whole, size) < 20_000);
@@ -243,7 +246,7 @@ mod tests {
             prop_assert!(holding >= 1, "no piece holds {}", place);
         }
 
-        /// Case 36, for any sliver of at least one piece's length: few pieces, and not far fewer than its area asks for.
+        /// Case 36, for any sliver of at least one piece's length: the number of pieces is in proportion to its area.
         #[test]
         fn slivers_have_no_more_pieces_than_their_area_and_length_ask_for(whole in shape(), size in 0.003..3.0_f64) {
             let points = whole.as_slice();

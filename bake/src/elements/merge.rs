@@ -1,7 +1,7 @@
-//! Coplanar polygons that share an edge become one larger convex polygon: fewer, larger occluders.
+//! Merges coplanar polygons that share an edge into larger convex polygons, for fewer and larger occluders.
 //!
-//! In each plane polygons first grow into strips along one direction, then in any. A regular grid so becomes one
-//! rectangle, a wall with a door three or four.
+//! In each plane, polygons first grow into strips along one direction, then in any direction. A regular grid becomes
+//! one rectangle; a wall with a door becomes three or four.
 
 use crate::geometry::disjoint_sets::DisjointSets;
 use crate::geometry::planes;
@@ -21,8 +21,8 @@ pub struct Merged {
     pub of: Vec<u32>,
 }
 
-/// Merge `polygons` (planar, convex, counter-clockwise from the front). Only polygons with equal `kind` may join, and
-/// only where `accept` takes the corners of the union. Polygons share an edge if its ends are equal to the bit.
+/// Merges `polygons` (planar, convex, counter-clockwise from the front). Polygons are merged only if their `kind` is
+/// equal and `accept` returns true for the corners of the union. Polygons share an edge if its ends are bit-identical.
 pub fn merge<K: Copy + Eq + Hash>(
     polygons: &[Face],
     kind: impl Fn(usize) -> K,
@@ -51,7 +51,7 @@ fn strip_directions(polygons: &[Face], planes: &[u32]) -> Vec<DVec3> {
     longest.into_iter().map(DVec3::normalize_or_zero).collect()
 }
 
-/// Which polygons may join at all: those of the same plane and kind.
+/// Plane and kind: only polygons of the same class are merged.
 type Class<K> = (u32, K);
 
 struct Merger<K> {
@@ -62,7 +62,7 @@ struct Merger<K> {
     normals: Vec<DVec3>,
     /// The polygon on the left of each directed edge.
     left_of: HashMap<(Class<K>, u32, u32), u32>,
-    /// The polygons that became one.
+    /// The polygons that were merged.
     joined: DisjointSets,
     tolerance: f64,
 }
@@ -93,7 +93,7 @@ impl<K: Copy + Eq + Hash> Merger<K> {
         merger
     }
 
-    /// Join neighbours across every edge that `across` allows until nothing more can be joined.
+    /// Merges neighbours across every edge that `across` allows, until no more can be merged.
     fn grow(&mut self, across: impl Fn(u32, DVec3) -> bool, accept: &impl Fn(&[DVec3]) -> bool) {
         loop {
             let mut joined = false;
@@ -108,7 +108,7 @@ impl<K: Copy + Eq + Hash> Merger<K> {
         }
     }
 
-    /// Join `polygon` with the first neighbour it can be joined with.
+    /// Merges `polygon` with the first neighbour that allows it, and returns whether there was one.
     fn join_one(
         &mut self,
         polygon: usize,

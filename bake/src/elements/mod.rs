@@ -1,4 +1,4 @@
-//! Surfaces → elements: every surface is cut into quads or triangles no larger than asked for.
+//! Cuts surfaces into elements: quads and triangles of at most a given size.
 
 pub mod bisect;
 pub mod clusters;
@@ -13,7 +13,7 @@ use glam::DVec3;
 use merge::{Merged, merge};
 use serde::{Deserialize, Serialize};
 
-/// How large elements may be.
+/// The largest size of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum ElementSize {
     /// No edge longer than this, metres.
@@ -23,7 +23,7 @@ pub enum ElementSize {
 }
 
 impl ElementSize {
-    /// The same size in units of which each is so many metres.
+    /// The same size in a unit of length that is `metres` long.
     pub fn in_units_of(self, metres: f64) -> Self {
         match self {
             Self::Metres(size) => Self::Metres(size / metres),
@@ -41,16 +41,16 @@ impl std::fmt::Display for ElementSize {
     }
 }
 
-/// About this many elements a scene has by default: seconds of work, and shadows one can see.
+/// About the number of elements of a scene by default: enough to show shadows after seconds of work.
 const DEFAULT_ELEMENTS: f64 = 3000.0;
 
 /// A size that suits surfaces of this total area (m²): a round number that gives a few thousand elements.
 pub fn default_size(area: f64) -> ElementSize {
-    // Above what rounding takes from it, such as scales in f32 do: scenes that are the same get the same size.
+    // Rounded up by more than scales in f32 are off, so that equal scenes get the same size.
     let wanted = (area / DEFAULT_ELEMENTS).sqrt() * (1.0 + 1e-6);
     let decade = 10f64.powf(wanted.log10().floor());
     let step = [5.0, 2.5, 2.0, 1.5, 1.0].into_iter().find(|s| s * decade <= wanted).unwrap_or(1.0);
-    // Written out and read again, so that the size printed is the size used.
+    // Formatted and parsed again, so that the printed size is the size used.
     ElementSize::Metres(format!("{:.3e}", step * decade).parse().unwrap_or(wanted))
 }
 
@@ -65,14 +65,14 @@ pub fn subdivide(part: &Part, size: ElementSize) -> Geometry {
     Panels::of(part, size).geometry()
 }
 
-/// A part's surfaces as they are cut up, before they are.
+/// A part's surfaces, ready to be cut into elements.
 #[derive(Debug)]
 pub struct Panels {
     size: ElementSize,
     panels: Vec<Panel>,
 }
 
-/// A triangle or parallelogram of one material that is cut up as a whole.
+/// A triangle or quad of one material that is cut as a whole.
 #[derive(Debug, Clone, Copy)]
 struct Panel {
     corners: Corners,
@@ -81,8 +81,8 @@ struct Panel {
 }
 
 impl Panels {
-    /// The panels of `part`, to be cut to elements of `size` in the part's own unit. They are the surfaces themselves, or, where
-    /// elements have their own size, parallelograms joined to larger ones, so that elements follow the wall and not its
+    /// The panels of `part`, for elements of `size` in the part's own unit. With [`ElementSize::Mesh`] they are the
+    /// surfaces themselves; otherwise adjacent parallelograms are merged, so that elements follow the wall and not its
     /// tessellation.
     pub fn of(part: &Part, size: ElementSize) -> Self {
         let panel =
@@ -95,7 +95,7 @@ impl Panels {
         Self { size, panels }
     }
 
-    /// How many elements they make.
+    /// The number of elements.
     pub fn elements(&self) -> u128 {
         let pieces = |panel: &Panel| match self.size {
             ElementSize::Metres(size) => cuts::count(&panel.corners, size),
@@ -130,13 +130,13 @@ impl Panels {
 }
 
 impl Panel {
-    /// How many of its sides have elements: the front, or the back too.
+    /// The number of sides with elements: 1 (front) or 2.
     fn sides(&self) -> usize {
         if self.two_sided { 2 } else { 1 }
     }
 }
 
-/// Reflectance and emission of every element.
+/// Reflectance and emission, one row an element: those of the material times `tints`.
 pub fn optics(geometry: &Geometry, materials: &[Material], tints: &Tints) -> Optics {
     let of = |element: &Element| &materials[element.material.index()];
     let (reflectance, emission) = (tints.reflectance.iter(), tints.emission.iter());
@@ -147,7 +147,7 @@ pub fn optics(geometry: &Geometry, materials: &[Material], tints: &Tints) -> Opt
     }
 }
 
-/// The same where some of the materials look otherwise: textures go on multiplying the new colours.
+/// `optics` after some materials were repainted. `tints` multiply the new colours too.
 pub fn repainted(geometry: &Geometry, optics: &Optics, tints: &Tints, repainted: &[Repainted]) -> Optics {
     let mut here = optics.clone();
     for (i, element) in geometry.elements.iter().enumerate() {
@@ -159,7 +159,7 @@ pub fn repainted(geometry: &Geometry, optics: &Optics, tints: &Tints, repainted:
     here
 }
 
-/// The panels with parallelograms of one material joined to larger ones.
+/// Merges adjacent parallelograms of one material.
 fn joined(panels: impl Iterator<Item = Panel>) -> Vec<Panel> {
     let (quads, mut panels): (Vec<Panel>, Vec<Panel>) = panels.partition(|p| p.corners.as_slice().len() == 4);
     let polygons: Vec<Face> = quads.iter().map(|panel| polygon(&panel.corners)).collect();

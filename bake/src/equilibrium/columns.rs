@@ -1,8 +1,8 @@
-//! A block by columns, for solvers that send light instead of gathering it.
+//! A block of form factors by columns, for solvers that shoot light instead of gathering it.
 
 use equilux_formats::Rows;
 
-/// The block by columns: for each node the receivers that see it.
+/// A block by columns: for each sender the receivers that see it.
 #[derive(Debug)]
 pub struct Columns {
     starts: Vec<usize>,

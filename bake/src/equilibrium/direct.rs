@@ -1,10 +1,10 @@
-//! LU factors of I − ρF, one a distinct channel, and solves with them. nalgebra uses no threads, so that bits do not
-//! depend on their number; parts are factored side by side.
+//! LU factorisation of I − ρF, one a distinct colour channel, and solves with it. nalgebra is single-threaded, so
+//! results do not depend on the number of threads; parts are factorised in parallel.
 
 use equilux_formats::{ClusterTree, Factors, Lu, Rgb, Rows};
 use nalgebra::{DMatrix, DMatrixView, DVector, LU};
 
-/// Factor I − ρF for every distinct channel of ρ.
+/// Factorises I − ρF for every distinct channel of ρ.
 pub fn factorise(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb]) -> Factors {
     distinct(
         |c, d| reflectance.iter().all(|rho| rho[c] == rho[d]),
@@ -12,7 +12,7 @@ pub fn factorise(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb]) -> F
     )
 }
 
-/// The factors of each channel that is no twin of an earlier one.
+/// Factorises each channel that does not equal an earlier one.
 fn distinct(are_twins: impl Fn(usize, usize) -> bool, factor: impl Fn(usize) -> Lu) -> Factors {
     let mut channels = Vec::new();
     let mut of_channel = [0u32; 3];
@@ -40,7 +40,7 @@ fn lu(block: &Rows, clusters: &ClusterTree, reflectance: &[Rgb], channel: usize)
     factored(matrix)
 }
 
-/// Factor three matrices of the same size, one a channel, `size × size`, given by their entries, row by row.
+/// Factorises three `size × size` matrices, one a channel. `entries` are row-major.
 pub fn factorise_dense(size: usize, entries: &[Rgb]) -> Factors {
     assert_eq!(entries.len(), size * size, "an entry a row and column");
     distinct(

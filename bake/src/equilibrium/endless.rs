@@ -1,17 +1,17 @@
-//! Light that never ends: elements that see only each other, absorb nothing, and emit have no equilibrium.
+//! Detects parts without an equilibrium: elements that see only each other, reflect all light, and emit.
 
 use crate::geometry::disjoint_sets::DisjointSets;
 use crate::treecode::MISSED;
 use equilux_formats::{ClusterTree, Optics, Rows};
 
-/// Losses below this are rounding of the row sums, not light that gets away.
+/// Smaller losses are rounding of the row sums, not absorbed or escaping light.
 const NO_LOSS: f64 = 1e-12;
 
-/// The first element of a group that exchanges light only among itself, reflects all of it in some channel and emits
-/// in that channel. `rows(i)` lists (sender, form factor) of element i over all elements.
+/// An emitting element of a group of elements that see only each other and whose reflectance is 1 in the channel of the
+/// emission; none if there is no such group. `rows(i)` lists (sender, form factor) of element i over all elements.
 pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>) -> Option<usize> {
     let n = optics.reflectance.len();
-    // Almost every scene absorbs something everywhere: then there is nothing to look for.
+    // In almost every scene all elements absorb light, and the search can be skipped.
     if optics.reflectance.iter().all(|rho| rho.iter().all(|&r| r < 1.0 - NO_LOSS)) {
         return None;
     }
@@ -40,10 +40,10 @@ pub fn endless_light(optics: &Optics, rows: impl Fn(usize) -> Vec<(usize, f64)>)
     None
 }
 
-/// The same for one block.
+/// [`endless_light`] for one block.
 pub fn endless_in_block(optics: &Optics, block: &Rows, clusters: &ClusterTree) -> Option<usize> {
     endless_light(optics, |i| {
-        // What a row may lack counts as staying: clusters must not open a closed part.
+        // The error of a row counts as light that stays: clusters must not open a closed part.
         let rounding = block.rounding();
         let mut row = if rounding > 0.0 { vec![(i, rounding + MISSED)] } else { vec![] };
         for (node, value) in block.row(i) {

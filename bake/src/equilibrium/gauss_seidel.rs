@@ -1,14 +1,14 @@
-//! Gauss-Seidel: B_i ← q_i + ρ_i Σ_j F_ij B_j, each element at once with the newest values. Cohen & Wallace 1993,
+//! Gauss-Seidel: B_i ← q_i + ρ_i Σ_j F_ij B_j, updating elements in turn with the newest values. Cohen & Wallace 1993,
 //! ch. 5.3.
 
 use super::channels::largest;
 use super::system::{LocalSystem, ROUNDING};
 use equilux_formats::Rgb;
 
-/// Sweeps after which a change below 1e-12 that no longer shrinks is taken for rounding.
+/// After this many iterations without progress, a change below 1e-12 is rounding.
 const PATIENCE: usize = 10;
 
-/// Sweep until the changes are rounding.
+/// Iterates until the changes are rounding.
 pub fn solve(system: &LocalSystem, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
     let mut nodes = system.clusters.means(guess);
     let (mut best, mut since_best) = (f64::INFINITY, 0);
@@ -26,7 +26,7 @@ pub fn solve(system: &LocalSystem, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
     }
 }
 
-/// One sweep over the elements; the clusters around each are kept up to date. Returns the largest change relative to
+/// One iteration over the elements, which also updates the clusters around each. Returns the largest change relative to
 /// the channel's largest radiosity.
 fn sweep(system: &LocalSystem, sources: &[Rgb], nodes: &mut [Rgb]) -> f64 {
     let mut most_change = Rgb::BLACK;

@@ -1,29 +1,28 @@
-//! Flexible GMRES on three channels at once: one matrix application serves red, green and blue, while each channel
-//! has its own Krylov space and stops on its own. Saad & Schultz 1986; Saad 1993 for the flexible form.
+//! Flexible GMRES on three channels at once: one matrix application serves red, green and blue, while each channel has
+//! its own Krylov space and stopping test. Saad & Schultz 1986; Saad 1993 for the flexible form.
 //!
-//! The matrix is only ever applied to a vector, by the caller: it may be dense, clusters, or blocks between parts.
+//! The caller supplies the matrix as a function of a vector: it may be dense, hierarchical, or blocks between parts.
 
 use super::channels::largest;
 use equilux_formats::Rgb;
 use rayon::prelude::*;
 
-/// Directions kept before the residual is taken afresh.
+/// Directions kept before the method restarts from the residual.
 const RESTART: usize = 40;
 
-/// Restarts after which the answer is returned as it is; the caller's own bound then says how good it is.
+/// The largest number of restarts. The result is then returned as it is; callers compute their own error bound.
 const RESTARTS: usize = 200;
 
-/// Elements that are summed on their own: sums of such pieces, in order, do not depend on the number of threads.
+/// Elements a partial sum. Partial sums of fixed size, added in order, do not depend on the number of threads.
 const PIECE: usize = 2048;
 
-/// A vector of which less than this share is new compared with a basis is made orthogonal to it once more: rounding then
-/// leaves it orthogonal to 1e-13.
+/// If orthogonalisation leaves less than this share of a vector, it is repeated. Vectors are then orthogonal to 1e-13.
 const NEW: f64 = 1e-3;
 
-/// Sums of squares in this range have neither overflowed nor lost anything.
+/// Sums of squares in this range have neither overflowed nor underflowed.
 const SAFE: std::ops::Range<f64> = 1e-280..1e280;
 
-/// Improve `x` until ‖rhs − A x‖∞ ≤ tolerance × ‖x‖∞ in every channel, or until rounding stops all progress.
+/// Improves `x` until ‖rhs − A x‖∞ ≤ tolerance × ‖x‖∞ in every channel, or until rounding prevents progress.
 /// `precondition` approximates A⁻¹ and may differ from call to call.
 pub fn gmres(
     mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>,
@@ -56,7 +55,8 @@ pub fn gmres(
     }
 }
 
-/// z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or as near as `RESTART` directions come; and rhs − A z.
+/// An approximate solution z with ‖rhs − A z‖ ≤ `share` × ‖rhs‖ in every channel, or the best after `RESTART`
+/// directions, and its residual rhs − A z.
 pub fn roughly(mut apply: impl FnMut(&[Rgb]) -> Vec<Rgb>, rhs: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
     let mut space = Space::new(rhs);
     let target = space.left() * share;
@@ -88,12 +88,12 @@ impl Space {
         Self { basis: vec![first], directions: vec![], least: LeastSquares::new(length) }
     }
 
-    /// The newest basis vector: what the next direction should answer.
+    /// The newest basis vector, from which callers derive the next direction.
     pub fn newest(&self) -> &[Rgb] {
         &self.basis[self.directions.len()]
     }
 
-    /// Take in a direction z, mostly the newest basis vector preconditioned, and A z.
+    /// Adds a direction z, usually the preconditioned newest basis vector, and A z.
     pub fn add(&mut self, z: Vec<Rgb>, mut az: Vec<Rgb>) {
         self.directions.push(z);
         let (column, length) = orthogonalise(&mut az, &self.basis);
@@ -102,12 +102,12 @@ impl Space {
         self.least.add_column(column, length);
     }
 
-    /// Whether it holds as many directions as it may; then a new one starts from the residual.
+    /// Whether it holds the largest number of directions. Callers then restart from the residual.
     pub fn is_full(&self) -> bool {
         self.directions.len() == RESTART
     }
 
-    /// The norm of the residual that is left, channel by channel.
+    /// The norm of the remaining residual in each channel.
     pub fn left(&self) -> Rgb {
         self.least.residual.map(f64::abs)
     }
@@ -140,8 +140,8 @@ fn add_combined(sum: &mut [Rgb], shares: &[Rgb], vectors: &[Vec<Rgb>]) {
     });
 }
 
-/// Take the components along `basis` out of `w` (Gram-Schmidt; again where little is left, after Daniel, Gragg, Kaufman &
-/// Stewart 1976); returns them and the norm of what is left.
+/// Removes the components along `basis` from `w` (Gram-Schmidt, repeated where little is left, after Daniel, Gragg,
+/// Kaufman & Stewart 1976). Returns the components and the remaining norm.
 fn orthogonalise(w: &mut [Rgb], basis: &[Vec<Rgb>]) -> (Vec<Rgb>, Rgb) {
     let (mut column, mut left) = (vec![Rgb::BLACK; basis.len()], Rgb::BLACK);
     // Twice is enough: Giraud, Langou & Rozložník 2005.
@@ -199,7 +199,7 @@ struct LeastSquares {
     columns: Vec<Vec<Rgb>>,
     rotations: Vec<(Rgb, Rgb)>,
     rhs: Vec<Rgb>,
-    /// What is left of the residual's norm.
+    /// The remaining norm of the residual.
     residual: Rgb,
 }
 
@@ -239,7 +239,7 @@ impl LeastSquares {
         y
     }
 
-    /// β e₁ − H y for the best y: what the rotations left in the last place, turned back.
+    /// β e₁ − H y for the best y: the last entry of the rotated right-hand side, rotated back.
     fn left_along_basis(&self) -> Vec<Rgb> {
         let mut left = vec![Rgb::BLACK; self.rotations.len() + 1];
         left[self.rotations.len()] = self.residual;

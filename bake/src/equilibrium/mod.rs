@@ -1,8 +1,8 @@
-//! The light of one part: (I − ρF) B = q, three channels, by whichever local solver the part prefers.
+//! Solves the equilibrium of one part, (I − ρF) B = q, in three colour channels, with the local solver of the part.
 //!
-//! F is the part's own block, ρ its reflectance, and q what every element sends before its own part reflects anything:
+//! F is the part's self block, ρ its reflectance, and q the radiosity of every element before its own part reflects any light:
 //! q = E alone for the local equilibrium, q = E + ρ × (irradiance from other parts) during the exchange. B is the
-//! radiosity. All four solvers stop at rounding, so the answer does not depend on the choice.
+//! radiosity. All four solvers converge to rounding, so the result does not depend on the choice.
 
 mod channels;
 mod columns;
@@ -21,8 +21,8 @@ use system::ROUNDING;
 pub use channels::largest;
 pub use system::{LocalSystem, apply};
 
-/// Up to this many elements the direct solver is the default. Its factors take n² numbers to keep and to
-/// read, n³/3 to make; a handful of gathers over a compressed block is cheaper from a few hundred elements on.
+/// Up to this many elements the direct solver is the default. Its factors take n² numbers of storage and n³/3
+/// operations; from a few hundred elements on, a few products with a compressed block are cheaper.
 const DIRECT_UP_TO: usize = 256;
 
 /// The default solver for a part of `elements` elements.
@@ -50,8 +50,8 @@ impl LocalSystem<'_> {
         }
     }
 
-    /// A B near that solution, and what it leaves of the sources; both W/m². Solvers that have no way to stop early leave
-    /// nothing but rounding, and say so. `share` is what may be left.
+    /// An approximate solution B and its residual, both W/m², one row an element. The norm of the residual is at most
+    /// `share` of that of the sources. Solvers that cannot stop early return the solution and a residual of zero.
     pub fn solve_roughly(&self, sources: &[Rgb], share: f64) -> (Vec<Rgb>, Vec<Rgb>) {
         let nothing = vec![Rgb::BLACK; sources.len()];
         match self.solver {
@@ -67,7 +67,7 @@ impl LocalSystem<'_> {
     }
 }
 
-/// The LU factors of I − ρF, if the solver wants them kept.
+/// The LU factors of I − ρF if the solver is direct.
 pub fn factorise(
     block: &Rows,
     clusters: &ClusterTree,

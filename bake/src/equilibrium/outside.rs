@@ -1,32 +1,34 @@
-//! A part's radiosities under a few simple lights from outside, from its equation and geometry. The exchange between
-//! parts uses them as a coarse space.
+//! A part's boundary responses: its radiosities under a few simple lights from outside. The exchange between parts uses
+//! them as a coarse space.
 //!
-//! What a receiver does not see of its own part, 1 − Σ_j F_ij, may send light from outside. That light is taken as uniform,
-//! as linear in the receiver's place, and as linear in the direction it faces, seven lights in all. Whatever other parts
-//! there are, the slow light between them, which goes to and fro many times, is smooth and hardly differs from a sum of
-//! the answers to these. Local responses as a coarse space: Dryja & Widlund 1994; Spillane et al. 2014 for slow modes.
+//! A receiver sees 1 − Σ_j F_ij outside its own part. Light from there is modelled as uniform, as linear in the
+//! receiver's position, and as linear in its normal: seven lights in all. The slowly converging components of the
+//! exchange between parts are smooth and close to a combination of the responses to these. Local responses as a coarse
+//! space: Dryja & Widlund 1994; Spillane et al. 2014 for slow modes.
 
 use super::system::LocalSystem;
 use crate::geometry::aabb::Aabb;
-use equilux_formats::{Answers, Element, Geometry, Rgb};
+use equilux_formats::{BoundaryResponses, Element, Geometry, Rgb};
 
-/// What may be left of a source when its answer is taken: the answers guide the exchange, they are not its result.
+/// Relative residual of a response. Responses accelerate the exchange and do not affect its result, so a rough solution
+/// suffices.
 const ROUGH: f64 = 1e-2;
 
-/// An answer that differs by less than this share of itself from a sum of those before it adds nothing.
+/// A response that is new by less than this share, compared with the span of those before it, is dropped.
 const NEW: f64 = 1e-3;
 
-/// A receiver that sees its own part but for this share sees nothing else: that is the rounding of its row's sum.
+/// A smaller share that a receiver sees outside its own part is rounding of its row sum.
 const CLOSED: f64 = 1e-12;
 
-/// A light, as the irradiance of an element to which all is open.
-type Light = Box<dyn Fn(&Element) -> f64>;
+/// The irradiance of an unobstructed element under one light from outside.
+type OutsideLight = Box<dyn Fn(&Element) -> f64>;
 
-/// The answers of a part with this system and geometry; none if nothing from outside can arrive, or none of it stays.
-pub fn answers(system: &LocalSystem, geometry: &Geometry) -> Answers {
+/// The boundary responses of a part with this system and geometry. Empty if no light from outside arrives, or the part
+/// reflects none.
+pub fn boundary_responses(system: &LocalSystem, geometry: &Geometry) -> BoundaryResponses {
     let areas: Vec<f64> = geometry.elements.iter().map(|element| element.area).collect();
     let open: Vec<f64> = (0..areas.len()).map(|i| open(1.0 - system.block.row_sum(i))).collect();
-    let mut answers = Answers::default();
+    let mut answers = BoundaryResponses::default();
     for (number, light) in lights(&geometry.elements).into_iter().enumerate() {
         let reflected =
             |i: usize| -> Rgb { system.reflectance[i] * (open[i] * light(&geometry.elements[i])) };
@@ -51,10 +53,10 @@ fn open(share: f64) -> f64 {
 }
 
 /// The seven lights.
-fn lights(elements: &[Element]) -> Vec<Light> {
+fn lights(elements: &[Element]) -> Vec<OutsideLight> {
     let around = Aabb::around(elements.iter().map(|element| element.centroid));
     let (centre, extent) = (around.centre(), around.size().max_element().max(f64::MIN_POSITIVE) / 2.0);
-    let mut lights: Vec<Light> = vec![Box::new(|_| 1.0)];
+    let mut lights: Vec<OutsideLight> = vec![Box::new(|_| 1.0)];
     for axis in 0..3 {
         lights.push(Box::new(move |element| (element.centroid[axis] - centre[axis]) / extent));
         lights.push(Box::new(move |element| element.normal[axis]));
@@ -62,16 +64,15 @@ fn lights(elements: &[Element]) -> Vec<Light> {
     lights
 }
 
-/// Of the power that uniform light brings in, the share that goes out again: by reciprocity, an element sends out what it
-/// would receive.
+/// The share of the power of uniform incident light that leaves the part again. By reciprocity, the weights with which
+/// elements send light out are those with which they receive it.
 fn returned(areas: &[f64], open: &[f64], radiosity: &[Rgb]) -> Rgb {
     let arriving: f64 = areas.iter().zip(open).map(|(area, open)| area * open).sum();
     let weights = areas.iter().zip(open).map(|(area, open)| area * open / arriving);
     weights.zip(radiosity).fold(Rgb::BLACK, |sum, (weight, b)| sum + *b * weight)
 }
 
-/// What is new in `vector` compared with `basis`, of length one in each channel; zeros in a channel in which nothing is,
-/// none if that are all.
+/// The component of `vector` orthogonal to `basis`, normalised in each channel. Channels without one are zero; none if all are.
 fn orthonormal(mut vector: Vec<Rgb>, basis: &[Vec<Rgb>], areas: &[f64]) -> Option<Vec<Rgb>> {
     let before = product(&vector, &vector, areas).map(f64::sqrt);
     // Twice is enough: Giraud, Langou & Rozložník 2005.

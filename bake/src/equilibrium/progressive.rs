@@ -1,4 +1,4 @@
-//! Progressive refinement: the element with the most unshot radiosity shoots first (Southwell relaxation). Cohen,
+//! Progressive refinement: the element with the largest unshot radiosity shoots first (Southwell relaxation). Cohen,
 //! Chen, Wallace & Greenberg 1988; Gortler & Cohen 1993 for the equivalence with Southwell.
 
 use super::channels::largest;
@@ -6,10 +6,10 @@ use super::columns::Columns;
 use super::system::{LocalSystem, ROUNDING};
 use equilux_formats::Rgb;
 
-/// Shoot until what is unshot is rounding.
+/// Shoots until the unshot radiosity is rounding.
 pub fn solve(system: &LocalSystem, columns: &Columns, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
     let mut b = guess.to_vec();
-    // Updates gather rounding over many shots: the residual is taken afresh until it is small at the start.
+    // Rounding accumulates over many shots: the residual is computed again until it is small at the start.
     loop {
         let irradiance = system.irradiance(&b);
         let mut unshot: Vec<Rgb> =
@@ -21,7 +21,7 @@ pub fn solve(system: &LocalSystem, columns: &Columns, sources: &[Rgb], guess: &[
     }
 }
 
-/// Shoot until no channel has more than rounding left; returns the number of shots.
+/// Shoots until no channel has more than rounding left, and returns the number of shots.
 fn shoot(system: &LocalSystem, columns: &Columns, b: &mut [Rgb], unshot: &mut [Rgb]) -> usize {
     let start = largest(b);
     let scale: Rgb = Rgb::from_fn(|c| start[c].max(largest(unshot)[c]).max(f64::MIN_POSITIVE));
@@ -42,7 +42,7 @@ fn shoot(system: &LocalSystem, columns: &Columns, b: &mut [Rgb], unshot: &mut [R
     unreachable!("the loop above ends only by returning")
 }
 
-/// Send the shot to all that see the element itself or a cluster around it.
+/// Adds the shot to all receivers that see the element or a cluster around it.
 fn shoot_one(system: &LocalSystem, columns: &Columns, element: usize, shot: Rgb, unshot: &mut [Rgb]) {
     let area = system.clusters.area_of(element);
     let mut node = Some(element);

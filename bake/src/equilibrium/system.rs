@@ -1,4 +1,4 @@
-//! One part's own equation (I − ρF) B = q as solvers see it: its block F and reflectance ρ.
+//! The equation (I − ρF) B = q of one part: its self block F and reflectance ρ.
 
 use super::columns::Columns;
 use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
@@ -8,7 +8,7 @@ use std::sync::OnceLock;
 /// A residual this small, relative to the largest radiosity, is rounding: a sum of a few thousand terms in f64.
 pub(super) const ROUNDING: f64 = 1e-14;
 
-/// One part's own equation, ready to be solved again and again.
+/// The equation of one part, for many right-hand sides.
 #[derive(Debug)]
 pub struct LocalSystem<'a> {
     pub(super) block: &'a Rows,
@@ -34,7 +34,7 @@ impl<'a> LocalSystem<'a> {
         Self { block, clusters, reflectance, solver, factors, columns: OnceLock::new() }
     }
 
-    /// F B of the part on its own, W/m².
+    /// Irradiance F B from the part itself, W/m², one row an element.
     pub fn irradiance(&self, radiosity: &[Rgb]) -> Vec<Rgb> {
         apply(self.block, &self.clusters.means(radiosity))
     }
@@ -46,7 +46,7 @@ impl<'a> LocalSystem<'a> {
     }
 }
 
-/// The irradiance of all receivers of a block, W/m², from the radiosity of all its nodes.
+/// The irradiance of all receivers of a block, W/m², from the radiosity of all its senders, W/m².
 pub fn apply(block: &Rows, nodes: &[Rgb]) -> Vec<Rgb> {
     (0..block.groups()).into_par_iter().flat_map_iter(|group| block.gather_group(group, nodes)).collect()
 }

@@ -1,11 +1,11 @@
-//! The contour sums of many small polygons, edge by edge: edges are collected and evaluated together.
+//! Contour sums of many small polygons. Edges are collected and evaluated together.
 
 use super::contour;
 use super::wide::{STEEP, angle_over_sine, vectorised};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Edges that wait for evaluation. Each belongs to one of the values that a block of them adds to.
+/// Edges that are not evaluated yet, each with the index of the value it contributes to.
 #[derive(Debug, Default)]
 pub struct Edges {
     cosine: Vec<f64>,
@@ -15,8 +15,8 @@ pub struct Edges {
 }
 
 impl Edges {
-    /// Add `sign` times the form factor of a polygon (corners relative to the receiver's point, above its horizon) to
-    /// the `value`-th of `values`, now or at [`Edges::flush`].
+    /// Adds `sign` times the form factor of a polygon (corners relative to the receiver's point, above its horizon) to
+    /// `values[value]`, at once or at [`Edges::flush`].
     pub fn add(&mut self, polygon: &[DVec3], normal: DVec3, sign: f64, value: usize, values: &mut [f64]) {
         let first = self.cosine.len();
         let mut a = polygon[polygon.len() - 1].normalize();
@@ -38,7 +38,7 @@ impl Edges {
         }
     }
 
-    /// Evaluate all that wait.
+    /// Evaluates all collected edges.
     pub fn flush(&mut self, values: &mut [f64]) {
         if self.cosine.is_empty() {
             return;

@@ -1,8 +1,7 @@
-//! F_ij = (1/π) ∫_{S_j} V(x_i,y) cosθ_i cosθ_j / |x_i−y|² dy, written as the equation reads.
+//! F_ij = (1/π) ∫_{S_j} V(x_i,y) cosθ_i cosθ_j / |x_i−y|² dy, computed directly.
 //!
-//! Every occluder hides a pyramid from the receiver's point x_i; what is left of the sender polygon after all pyramids
-//! are taken away is integrated exactly. No acceleration, nothing shared between pairs: this is the oracle that every
-//! faster way is tested against.
+//! Every occluder hides a pyramid from the receiver's point x_i. The sender polygon minus all pyramids is integrated
+//! exactly. There is no acceleration and no sharing between pairs: tests compare the faster methods with this one.
 
 use super::contour;
 use crate::geometry::outline::Plane;
@@ -12,8 +11,8 @@ use crate::world::World;
 use equilux_formats::{Element, Face, FaceId};
 use glam::DVec3;
 
-/// The form factor from element `receiver` to element `sender` of `world`, with everything else in the way; without
-/// unit, 0..1. Faces in the plane of either end hide nothing of it.
+/// The form factor from element `receiver` to element `sender` of `world`, occluded by all faces; without unit, 0..1.
+/// Faces in the plane of the receiver or the sender do not occlude.
 pub fn form_factor(world: &World, receiver: usize, sender: usize) -> f64 {
     let (receiver, sender) = (&world.elements[receiver], &world.elements[sender]);
     let ends = [receiver.face, sender.face];
@@ -37,8 +36,8 @@ pub fn form_factor(world: &World, receiver: usize, sender: usize) -> f64 {
     pieces.iter().map(|piece| contour::form_factor(piece, receiver.normal)).sum()
 }
 
-/// The sender's polygon relative to the receiver's point, cut off at the receiver's horizon; none if the sender turns
-/// its back, or one lies in the other's plane.
+/// The sender's polygon relative to the receiver's point, cut off at the receiver's horizon; none if the sender faces
+/// away, or one lies in the other's plane.
 pub fn visible_side(receiver: &Element, sender: &Element) -> Option<Polygon> {
     let x = receiver.centroid;
     let polygon: Polygon = sender.corners.as_slice().iter().map(|&p| p - x).collect();
@@ -56,15 +55,15 @@ pub fn visible_side(receiver: &Element, sender: &Element) -> Option<Polygon> {
     }
 }
 
-/// The pyramid that `occluder` hides of what lies in the plane `of` from the point `x` before it; none if it lies behind
-/// that plane or is seen edge-on.
+/// The pyramid that `occluder` hides, from the point `x`, of a sender in the plane `of`; none if the occluder lies
+/// behind that plane or is seen edge-on.
 pub fn hidden_pyramid(x: DVec3, occluder: &Face, of: Plane) -> Option<Pyramid> {
     let polygon: Polygon = occluder.corners.iter().map(|&p| p - x).collect();
     let reach = polygon.iter().map(|p| p.length()).fold(0.0, f64::max);
     if occluder.normal.dot(polygon[0]).abs() <= IN_PLANE * reach {
         return None;
     }
-    // Only what stands between x and the sender's plane hides anything of the sender.
+    // Only the part between x and the sender's plane can hide the sender.
     let on_plane = of.point - x;
     let before_sender = |p: DVec3| of.normal.dot(p - on_plane);
     if polygon.iter().all(|&p| before_sender(p) <= IN_PLANE * reach) {

@@ -1,14 +1,14 @@
 //! The contour sum for many receivers at once: the same polygon seen from the points of one flat cluster.
 //!
 //! With unit vectors a, b to an edge's ends, θ n·(a×b)/|a×b| = n·(a×b) · g(a·b), where g(c) = acos(c)/√(1−c²) is smooth
-//! on (−1, 1]: no cross product is normalised and no arc tangent taken. All loops run over lanes of plain arrays, which
+//! on (−1, 1]: no cross product is normalised and no arc tangent computed. All loops run over lanes of plain arrays, which
 //! the compiler turns into vector instructions where they are inlined into [`vectorised`]. [`super::contour`] is the
 //! plain version.
 
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Receivers that are worked on together.
+/// Receivers computed together.
 pub const LANES: usize = 8;
 
 /// One number a lane.
@@ -17,16 +17,16 @@ pub type Lane = [f64; LANES];
 /// One vector a lane, by coordinate.
 pub type Vectors = [Lane; 3];
 
-/// Cosines below this belong to edges that pass close by a receiver: there g is steep, and the plain contour is taken.
+/// Smaller cosines belong to edges that pass close to a receiver. There g is steep, and the plain contour is used.
 pub const STEEP: f64 = -0.98;
 
-/// Run `kernel` with the widest instructions this machine has. Bits do not depend on which those are: fused multiplications
-/// are asked for where they are wanted, and done in software where there are none.
+/// Runs `kernel` with the widest vector instructions of this machine. Results do not depend on them: fused
+/// multiplications are explicit, and emulated on machines without them.
 pub fn vectorised<R>(kernel: impl FnOnce() -> R) -> R {
     pulp::Arch::new().dispatch(kernel)
 }
 
-/// Points of receivers that look along the same normal, padded with the last to whole lanes.
+/// Points of receivers with the same normal, padded to whole lanes with the last point.
 #[derive(Debug)]
 pub struct Points {
     lanes: Vec<Vectors>,
@@ -57,7 +57,7 @@ impl Points {
         &self.lanes
     }
 
-    /// The normal they share.
+    /// The unit normal of all receivers.
     pub fn normal(&self) -> DVec3 {
         self.normal
     }

@@ -1,10 +1,10 @@
-//! Boxes along the axes.
+//! Axis-aligned boxes.
 
 use super::polygon::Polygon;
 use glam::DVec3;
 use std::borrow::Borrow;
 
-/// A box along the axes, metres. Empty if any coordinate of `low` is above that of `high`.
+/// An axis-aligned box, metres. Empty if any coordinate of `low` is above that of `high`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aabb {
     /// Lowest corner.
@@ -36,12 +36,12 @@ impl Aabb {
         Self { low: self.low + by, high: self.high + by }
     }
 
-    /// The box that reaches `by` further to all sides.
+    /// The box enlarged by `by` on all sides.
     pub fn grown(self, by: f64) -> Self {
         Self { low: self.low - by, high: self.high + by }
     }
 
-    /// Whether it holds nothing.
+    /// Whether it contains no point.
     pub fn is_empty(&self) -> bool {
         self.low.cmpgt(self.high).any()
     }

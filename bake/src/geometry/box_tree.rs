@@ -1,6 +1,7 @@
-//! A hierarchy of boxes around things.
+//! A bounding volume hierarchy.
 //!
-//! obvhs builds it in f32; boxes are then taken anew in f64, and exact clipping decides everything.
+//!
+//! obvhs builds it in f32; its boxes are then computed again in f64. Results depend on exact clipping only.
 
 use super::aabb::Aabb;
 use glam::{DVec3, Vec3A};
@@ -9,34 +10,34 @@ use obvhs::bvh2::{Bvh2, builder::build_bvh2};
 use obvhs::{Boundable, BvhBuildParams};
 use std::time::Duration;
 
-/// A binary hierarchy of boxes around things.
+/// A binary hierarchy of boxes around items, which callers number.
 #[derive(Debug)]
 pub struct BoxTree {
     nodes: Vec<BoxNode>,
     things: Vec<u32>,
 }
 
-/// A box and what it holds.
+/// A box of the hierarchy.
 #[derive(Debug, Clone, Copy)]
 pub struct BoxNode {
     /// The box.
     pub bounds: Aabb,
     first: u32,
-    /// Number of things in a leaf; none in an inner node, whose two children stand at `first`.
+    /// Number of items of a leaf; 0 in an inner node, whose two children are at `first`.
     count: u32,
 }
 
-/// What is inside a box.
+/// The contents of a box.
 #[derive(Debug)]
 pub enum Inside<'a> {
     /// Two smaller boxes.
     Boxes([usize; 2]),
-    /// These things.
+    /// The numbers of the items of a leaf.
     Things(&'a [u32]),
 }
 
 impl BoxTree {
-    /// The hierarchy of things with these boxes.
+    /// The hierarchy of items with these boxes.
     pub fn new(boxes: &[Aabb]) -> Self {
         let (centre, padding) = frame(boxes.iter().flat_map(|b| [b.low, b.high]));
         let rounded: Vec<Box3> =
@@ -52,17 +53,17 @@ impl BoxTree {
         tree
     }
 
-    /// The box around everything; none if there is nothing.
+    /// The index of the box around everything; none if there are no items.
     pub fn root(&self) -> Option<usize> {
         (!self.nodes.is_empty()).then_some(0)
     }
 
-    /// A box.
+    /// The box at `index`.
     pub fn node(&self, index: usize) -> &BoxNode {
         &self.nodes[index]
     }
 
-    /// What a box holds.
+    /// The contents of the box at `index`.
     pub fn inside(&self, index: usize) -> Inside<'_> {
         let BoxNode { first, count, .. } = self.nodes[index];
         let first = first as usize;
@@ -73,7 +74,7 @@ impl BoxTree {
         }
     }
 
-    /// The things in boxes that `sought` meets; a leaf's things come together.
+    /// The items of all leaves whose boxes intersect `sought`, leaf by leaf.
     pub fn meeting(&self, sought: Aabb) -> Vec<u32> {
         let (mut found, mut open) = (Vec::new(), Vec::from_iter(self.root()));
         while let Some(index) = open.pop() {

@@ -1,4 +1,4 @@
-//! Geometry that knows nothing of light: polygons and their cuts, planes, outlines, shells, boxes and hierarchies of boxes.
+//! Geometry without light: polygons and clipping, planes, outlines, shells, boxes and hierarchies of boxes.
 
 pub mod aabb;
 pub mod box_tree;

@@ -1,5 +1,5 @@
-//! The edges of an occluder that may be its silhouette: those between a side that looks at the onlooker and one that
-//! does not. Faces have two sides back to back, convex solids as many as faces.
+//! The edges of a convex occluder. Its silhouette consists of those between a side that faces the viewer and one that
+//! does not. A face has two sides back to back; a convex solid has as many as faces.
 
 use glam::DVec3;
 
@@ -10,13 +10,13 @@ pub struct Outline {
     pub sides: Vec<Plane>,
     /// Its edges.
     pub edges: Vec<Edge>,
-    /// Its largest extent, at most.
+    /// An upper bound of its largest extent.
     pub size: f64,
-    /// Whether it has no inside: a face, which hides nothing from within its plane.
+    /// Whether it is a face, which hides nothing from a point in its plane.
     pub thin: bool,
 }
 
-/// A plane through `point`; it looks at what lies on the side of `normal`.
+/// A plane through `point`; it faces the half-space that `normal` points into.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane {
     /// Unit normal, outwards.
@@ -36,11 +36,11 @@ pub struct Edge {
     pub right: u32,
 }
 
-/// A side that never looks.
+/// A side that faces no viewer.
 pub const NO_SIDE: u32 = u32::MAX;
 
 impl Outline {
-    /// Of a planar convex polygon, corners counter-clockwise around `normal`.
+    /// The outline of a planar convex polygon, corners counter-clockwise around `normal`.
     pub fn of_face(corners: &[DVec3], normal: DVec3) -> Self {
         let edge = |(i, &a): (usize, &DVec3)| {
             let b = corners[if i + 1 == corners.len() { 0 } else { i + 1 }];
@@ -55,8 +55,8 @@ impl Outline {
         }
     }
 
-    /// Of the piece of a solid where `height` (affine) is above zero. `faces` are the corners of its sides. The
-    /// receiver must be above, too: the cut itself faces none.
+    /// The outline of the piece of a solid where `height` (affine) is above zero. `faces` are the corners of its sides.
+    /// The receiver must be above as well, so that the cut does not face it.
     pub fn above<'a>(&self, faces: impl Iterator<Item = &'a [DVec3]>, height: impl Fn(DVec3) -> f64) -> Self {
         let reaches_up = |edge: &&Edge| edge.ends.iter().any(|&p| height(p) > 0.0);
         let mut edges: Vec<Edge> = self.edges.iter().filter(reaches_up).copied().collect();
@@ -69,7 +69,7 @@ impl Outline {
     }
 }
 
-/// Where a plane cuts a convex polygon: the edge that closes the piece above, in the piece's order.
+/// The edge that closes the piece of a convex polygon above a plane, in the order of the piece's corners.
 fn cut_edge(corners: &[DVec3], height: impl Fn(DVec3) -> f64) -> Option<[DVec3; 2]> {
     let (mut exit, mut entry) = (None, None);
     for (i, &a) in corners.iter().enumerate() {

@@ -1,15 +1,15 @@
-//! Which faces lie in one plane. Such faces neither light nor hide one another, whatever rounding says.
+//! Groups faces by the plane they lie in. Coplanar faces neither light nor hide one another, regardless of rounding.
 
 use super::tolerance::FLATNESS;
 use equilux_formats::Face;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Normals are sorted into cubes of this side; neighbours are searched too.
+/// Side of the grid cells that normals are sorted into. Neighbouring cells are searched too.
 const CELL: f64 = 1.0 / 64.0;
 
 /// A plane number for every face; faces get the same number if all corners of the one lie within the flatness
-/// tolerance of the plane of the other, on either side. Larger faces set the planes: theirs are known best.
+/// tolerance of the plane of the other, on either side. Larger faces define the planes, because theirs are the most accurate.
 pub fn group(faces: &[Face]) -> Vec<u32> {
     let tolerances: Vec<f64> = faces.iter().map(|face| tolerance(&face.corners)).collect();
     let mut order: Vec<usize> = (0..faces.len()).collect();
@@ -36,7 +36,7 @@ pub fn group(faces: &[Face]) -> Vec<u32> {
     of_face
 }
 
-/// How far, metres, something may lie off a plane among these points and still count as in it.
+/// The distance from a plane, in the unit of these points, up to which a point counts as in it.
 pub fn tolerance<'a>(points: impl IntoIterator<Item = &'a DVec3>) -> f64 {
     FLATNESS * points.into_iter().map(|p| p.abs().max_element()).fold(0.0, f64::max)
 }
@@ -49,7 +49,7 @@ fn lies_in(face: &Face, plane: &Face, tolerance: f64) -> bool {
     face.corners.iter().all(|&p| plane.normal.dot(p - plane.corners[0]).abs() <= tolerance)
 }
 
-/// The normal with its sign taken away: opposite faces share a plane.
+/// The normal without its sign: opposite faces share a plane.
 fn axis(normal: DVec3) -> DVec3 {
     let largest = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs())).unwrap_or(0);
     if normal[largest] < 0.0 { -normal } else { normal }

@@ -1,4 +1,4 @@
-//! Points and edges as keys of maps: the same if they are equal to the bit.
+//! Points and edges as keys of maps; keys are equal if the points are bit-identical.
 
 use glam::DVec3;
 

@@ -1,13 +1,14 @@
-//! Convex polygons and the two cuts they suffer: by a plane, and by the pyramid that an occluder hides.
+//! Convex polygons, and clipping them by a plane or by the pyramid that an occluder hides.
 //!
 //! All points are relative to the receiver's collocation point, so every plane of a pyramid passes through the
 //! origin and is given by its normal alone.
 
 use super::tolerance::{CUT_ROUNDING, IN_PLANE, STRAIGHT};
+use equilux_formats::Corners;
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
-/// A planar convex polygon, corners in order. Ten corners lie in place; more spill to the heap, none are dropped.
+/// A planar convex polygon, corners in order. Up to ten corners are stored inline, more on the heap.
 pub type Polygon = SmallVec<[DVec3; 10]>;
 
 /// What lies on one side of a plane.
@@ -22,9 +23,9 @@ pub enum Side {
     Piece(Polygon),
 }
 
-/// The part of `polygon` where `distance` (an affine function of the point) is positive. Corners on the plane belong
-/// to both sides, and a polygon that only touches the plane is not cut. Signs decide, and the cut point lies between the
-/// corners it came from. A piece that is no higher than its corners are rounded by is an edge, and is none.
+/// The part of `polygon` where `distance` (an affine function of the point) is positive. Corners on the plane belong to
+/// both sides, and a polygon that only touches the plane is not cut. Only signs decide, and a cut point lies between
+/// the corners of its edge. A piece no higher than the rounding of its corners counts as an edge: [`Side::None`].
 pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
     let distances: SmallVec<[f64; 12]> = polygon.iter().map(|&p| distance(p)).collect();
     if distances.iter().all(|&d| d >= 0.0) {
@@ -47,8 +48,8 @@ pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
     if is_edge(&piece) { Side::None } else { Side::Piece(piece) }
 }
 
-/// The pieces of `polygon` on both sides of a plane: where `distance` is positive, and where it is negative. What lies in the
-/// plane altogether is the first.
+/// The pieces of `polygon` on both sides of a plane: where `distance` is positive, and where it is negative. A polygon
+/// in the plane is the first.
 pub fn part(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> [Option<Polygon>; 2] {
     let side = |sign: f64| match clip(polygon, |p| sign * distance(p)) {
         Side::All => Some(Polygon::from_slice(polygon)),
@@ -61,7 +62,7 @@ pub fn part(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> [Option<Polyg
     }
 }
 
-/// Whether a planar convex polygon is no higher over its longest edge than its corners are rounded by.
+/// Whether the height of a planar convex polygon over its longest edge is within the rounding of its corners.
 fn is_edge(polygon: &[DVec3]) -> bool {
     let origin = polygon[0];
     let (mut double_area, mut longest2, mut reach2) = (DVec3::ZERO, 0.0_f64, 0.0_f64);
@@ -75,19 +76,35 @@ fn is_edge(polygon: &[DVec3]) -> bool {
     double_area.length_squared() <= CUT_ROUNDING * CUT_ROUNDING * longest2 * reach2
 }
 
+/// Splits a planar convex polygon into quads, and a triangle where corners are left. Pieces no higher than the rounding
+/// of their corners, such as the tip of a needle, are dropped, as by [`clip`].
+pub(crate) fn quads_and_triangles(polygon: &[DVec3]) -> Vec<Corners> {
+    let mut pieces = Vec::new();
+    let mut next = 1;
+    while next + 2 < polygon.len() {
+        pieces.push(Corners::quad([polygon[0], polygon[next], polygon[next + 1], polygon[next + 2]]));
+        next += 2;
+    }
+    if next + 1 < polygon.len() {
+        pieces.push(Corners::triangle([polygon[0], polygon[next], polygon[next + 1]]));
+    }
+    pieces.retain(|piece| !is_edge(piece.as_slice()));
+    pieces
+}
+
 /// The pyramid of directions that a convex occluder hides from the origin.
 #[derive(Debug, Clone)]
 pub struct Pyramid {
-    /// Normals of the planes through the origin and one edge each, pointing inwards. Without any everything is hidden.
+    /// Normals of the planes through the origin and one edge each, pointing inwards. If there are none, everything is hidden.
     planes: Polygon,
 }
 
-/// How a pyramid lies to a polygon.
+/// How much of a polygon a pyramid hides.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hides {
     /// Nothing of it.
     Nothing,
-    /// Perhaps a piece of it.
+    /// Possibly a piece of it.
     Part,
     /// All of it.
     All,
@@ -95,8 +112,8 @@ pub enum Hides {
 
 impl Pyramid {
     /// The pyramid over `occluder`, which must lie wholly in the open half space before the sender's plane and whose
-    /// own plane must not contain the origin. Where cutting left two corners that are the same but for rounding, the edge
-    /// between them has no direction, and no plane.
+    /// own plane must not contain the origin. An edge between two corners that differ by rounding only has no direction
+    /// and adds no plane.
     pub fn over(occluder: &[DVec3], normal: DVec3) -> Self {
         // Seen from the origin the corners run counter-clockwise around the inside if the normal points away from it.
         let facing = if normal.dot(occluder[0]) > 0.0 { 1.0 } else { -1.0 };
@@ -111,13 +128,13 @@ impl Pyramid {
         Self::between(planes)
     }
 
-    /// The pyramid between planes through the origin, normals inwards, of any length.
+    /// The pyramid between planes through the origin. Normals point inwards and may have any length.
     pub fn between(planes: Polygon) -> Self {
         Self { planes: planes.into_iter().map(DVec3::normalize).collect() }
     }
 
-    /// How the pyramid lies to `polygon`. Corners within [`IN_PLANE`] of a side count as in it, so that a polygon that
-    /// shares an edge with the silhouette is hidden, or not, exactly.
+    /// How much of `polygon` the pyramid hides. Corners within [`IN_PLANE`] of a side count as in it, so that a polygon
+    /// that shares an edge with the silhouette is hidden either entirely or not at all.
     pub fn hides(&self, polygon: &[DVec3]) -> Hides {
         let reach = polygon.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
         let slack = IN_PLANE * reach;
@@ -153,14 +170,14 @@ impl Pyramid {
         Some(inside)
     }
 
-    /// Whether `polygon` surely has nothing inside: it lies wholly behind one of the planes.
+    /// Whether `polygon` lies wholly behind one of the planes, and therefore outside.
     pub fn misses(&self, polygon: &[DVec3]) -> bool {
         self.planes.iter().any(|plane| polygon.iter().all(|p| plane.dot(*p) <= 0.0))
     }
 
-    /// Append to `outside` the convex pieces of `polygon` that the pyramid does not hide.
+    /// Appends to `outside` the convex pieces of `polygon` that the pyramid does not hide.
     ///
-    /// One plane after the other cuts off what lies behind it; what is left in the end is hidden.
+    /// Each plane cuts off what lies behind it; the remainder is hidden.
     pub fn subtract_from(&self, polygon: Polygon, outside: &mut Vec<Polygon>) {
         if self.misses(&polygon) {
             outside.push(polygon);
@@ -190,8 +207,8 @@ impl Pyramid {
 /// The convex hull of points in a plane, counter-clockwise around `normal`, without corners that bend by rounding only
 /// (Andrew 1979).
 ///
-/// First all corners are found, by signs alone: columns of a grid differ by rounding along one axis, and a tolerance there
-/// would drop their ends. Only then those go that lie on the line between their neighbours.
+/// All corners are found by signs alone, because columns of a grid differ by rounding along one axis and a tolerance
+/// would drop their ends. Then corners on the line between their neighbours are removed.
 pub fn convex_hull(points: impl Iterator<Item = DVec3>, normal: DVec3) -> Polygon {
     let (u, v) = normal.any_orthonormal_pair();
     let mut sorted: SmallVec<[(DVec2, DVec3); 32]> =
@@ -228,7 +245,7 @@ pub fn convex_hull(points: impl Iterator<Item = DVec3>, normal: DVec3) -> Polygo
     hull.into_iter().map(|(_, p)| p).collect()
 }
 
-/// Whether the way through two places on to a third turns left, by more than this sine.
+/// Whether the path through two points to a third turns left by more than this sine.
 fn turns_left(way: &[(DVec2, DVec3)], to: (DVec2, DVec3), sine: f64) -> bool {
     let (ab, bc) = (way[1].0 - way[0].0, to.0 - way[1].0);
     ab.perp_dot(bc) > sine * ab.length() * bc.length()

@@ -1,8 +1,8 @@
-//! Placements without what rounding adds to them.
+//! Placements rounded so that equal placements compare equal.
 
 use glam::DAffine3;
 
-/// Steps in which placements are kept, in powers of two below their largest number: rounding makes no other placement.
+/// Step of rounded placements, in powers of two below their largest number: coarse enough to absorb rounding.
 const FINE: i32 = 40;
 
 /// A placement in steps of 2^`exponent`, column by column.

@@ -1,12 +1,12 @@
-//! The region between a cluster of receivers and a sender: whatever lies outside it cannot stand in between.
+//! The region between a cluster of receivers and a sender: objects outside it cannot occlude.
 //!
 //! Planes through corners of the two boxes bound the boxes' convex hull from outside (Haines & Wallace 1994), together
-//! with the receivers' horizon and the plane of a flat sender. Conservative: what is called outside is outside.
+//! with the receivers' horizon and the plane of a flat sender. Conservative: objects reported as outside are outside.
 
 use super::aabb::Aabb;
 use glam::DVec3;
 
-/// Planes of a region: four bridges for each pair of axes, then the horizon and the sender's plane, and two to spare.
+/// Number of planes of a region: four bridges for each pair of axes, the horizon, the sender's plane, and two spare ones.
 const PLANES: usize = 16;
 
 /// For each bridge the two axes of its plane, and whether it lies up or down them.
@@ -85,7 +85,7 @@ impl Shaft {
     pub fn misses_box(&self, &Aabb { low, high }: &Aabb) -> bool {
         let around = &self.around;
         if low.cmpge(around.high).any() || high.cmple(around.low).any() {
-            // A flat thing in a side of the region only touches it, unless the region itself is flat there.
+            // A flat box in a side of the region only touches it, unless the region itself is flat there.
             let flat = around.low.cmpeq(around.high);
             let apart = (low.cmpge(around.high) & !flat).any()
                 || (high.cmple(around.low) & !flat).any()

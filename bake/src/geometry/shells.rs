@@ -1,8 +1,9 @@
-//! Closed shells among polygons: polygons → groups that enclose a volume, and which of their members look into it.
+//! Finds closed shells among polygons: groups that enclose a volume, and which of their polygons face into it.
 //!
-//! A shell closes by whole edges: each edge lies between two polygons. Where the winding is not the same all over and no
-//! polygon depends on it, one winding is carried across the edges. How often a shell goes around a point is the sum of the
-//! solid angles of its polygons over 4π: 1 inside, 0 outside, whatever its shape (Jacobson, Kavan & Sorkine-Hornung 2013).
+//! A shell is closed if each edge lies between two polygons. If the winding of its polygons is inconsistent but does
+//! not matter, one winding is propagated across the edges. How often a shell goes around a point is the sum of the
+//! solid angles of its polygons over 4π: 1 inside, 0 outside, whatever its shape (Jacobson, Kavan & Sorkine-Hornung
+//! 2013).
 
 use crate::geometry::disjoint_sets::DisjointSets;
 use crate::geometry::point_key::{EdgeKey, edge_keys};
@@ -18,18 +19,18 @@ use std::f64::consts::PI;
 pub struct Shell {
     /// The numbers of its polygons, rising.
     pub polygons: Vec<u32>,
-    /// For each of them, whether it looks into the shell as it is wound.
+    /// For each of them, whether its front faces into the shell.
     pub inward: Vec<bool>,
 }
 
-/// The shells that close by whole edges. `either_way(i)` tells whether the winding of polygon `i` may be turned round: one of
-/// which both sides are alike.
+/// The closed shells among `polygons`. `either_way(i)` returns whether the winding of polygon `i` may be reversed,
+/// because its sides are alike.
 pub fn closed_shells(polygons: &[&[DVec3]], either_way: impl Fn(usize) -> bool) -> Vec<Shell> {
     let groups = groups_by_edges(polygons);
     groups.iter().filter_map(|group| shell(group, polygons, &either_way)).collect()
 }
 
-/// Polygons that hang together by whole edges, groups by their first polygon.
+/// Groups of polygons connected by whole edges, ordered by their first polygon.
 pub(crate) fn groups_by_edges(polygons: &[&[DVec3]]) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(polygons.len());
     let mut first_at: HashMap<EdgeKey, usize> = HashMap::new();
@@ -59,7 +60,7 @@ fn shell(group: &[usize], polygons: &[&[DVec3]], either_way: impl Fn(usize) -> b
     Some(Shell { polygons: group.iter().map(|&polygon| polygon as u32).collect(), inward })
 }
 
-/// Whether each edge runs as often one way as the other.
+/// Whether each edge occurs equally often in both directions.
 pub(crate) fn is_balanced(group: &[usize], polygons: &[&[DVec3]]) -> bool {
     let mut balance: HashMap<EdgeKey, i32> = HashMap::new();
     for (edge, forth) in group.iter().flat_map(|&polygon| edge_keys(polygons[polygon])) {
@@ -68,8 +69,8 @@ pub(crate) fn is_balanced(group: &[usize], polygons: &[&[DVec3]]) -> bool {
     balance.values().all(|&balance| balance == 0)
 }
 
-/// Which polygons of a group must be turned round so that all edges run both ways; none if an edge does not lie between
-/// two polygons, or if the surface has one side only.
+/// Which polygons of a group must be reversed so that each edge occurs in both directions; none if an edge does not lie
+/// between two polygons, or if the surface is not orientable.
 fn one_winding(group: &[usize], polygons: &[&[DVec3]]) -> Option<Vec<bool>> {
     let mut at: HashMap<EdgeKey, Vec<(usize, bool)>> = HashMap::new();
     for (place, &polygon) in group.iter().enumerate() {
@@ -101,7 +102,7 @@ fn one_winding(group: &[usize], polygons: &[&[DVec3]]) -> Option<Vec<bool>> {
     turned.into_iter().collect()
 }
 
-/// The volume inside polygons that close, negative if they look inwards, and their area.
+/// The volume inside a closed surface, negative if its polygons face inwards, and its area.
 pub(crate) fn volume_and_area<'a>(polygons: impl Iterator<Item = (&'a [DVec3], bool)>) -> (f64, f64) {
     let (mut origin, mut volume, mut area) = (None, 0.0, 0.0);
     for (corners, turned) in polygons {
@@ -116,7 +117,7 @@ pub(crate) fn volume_and_area<'a>(polygons: impl Iterator<Item = (&'a [DVec3], b
     (volume, area)
 }
 
-/// How often polygons that look outwards go around a point: 1 inside a closed shell, 0 outside, between on it.
+/// The winding number of outward-facing polygons around a point: 1 inside a closed shell, 0 outside, between on it.
 pub fn winding_number<'a>(point: DVec3, polygons: impl Iterator<Item = &'a [DVec3]>) -> f64 {
     let seen = |corners: &[DVec3]| {
         let corners: Polygon = corners.iter().map(|&corner| corner - point).collect();
@@ -125,7 +126,7 @@ pub fn winding_number<'a>(point: DVec3, polygons: impl Iterator<Item = &'a [DVec
     polygons.map(seen).sum::<f64>() / (4.0 * PI)
 }
 
-/// A convex polygon as triangles around its first corner.
+/// The triangle fan of a convex polygon around its first corner.
 pub(crate) fn triangles(corners: &[DVec3]) -> impl Iterator<Item = [DVec3; 3]> + '_ {
     corners.windows(2).skip(1).map(|edge| [corners[0], edge[0], edge[1]])
 }

@@ -1,7 +1,7 @@
-//! The closed solids of a part, and which points lie inside them. Faces → solids, in the part's coordinates.
+//! Finds the closed solids of a part among its faces, and tests which points lie inside them. All in the part's coordinates.
 //!
-//! A solid is a shell of faces of which the side that has elements looks outwards. A room, whose faces look inwards, is
-//! none; nor is what is open somewhere, or what shines or reflects on both sides.
+//! A solid is a closed shell of faces with elements on the outside only. Rooms, open shells, and faces with elements on
+//! both sides are not solids.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::disjoint_sets::DisjointSets;
@@ -14,7 +14,7 @@ use equilux_formats::{Element, Face, Geometry};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// A closed shell of faces that look outwards.
+/// A closed shell of outward-facing faces.
 #[derive(Debug)]
 pub struct Solid {
     /// The box around it.
@@ -58,8 +58,8 @@ pub(crate) fn lit_behind(elements: &[Element], faces: &[Face]) -> Vec<bool> {
     lit
 }
 
-/// Shells that look outwards: faces that close by whole edges, and of the others those that close and share corners, as the
-/// merged faces of a wall with a door do.
+/// Outward-facing shells: faces closed by whole edges, and of the others those that are closed and share corners, such
+/// as the merged faces of a wall with a door.
 fn shells(faces: &[Face]) -> Vec<Vec<u32>> {
     let polygons: Vec<&[DVec3]> = faces.iter().map(|face| face.corners.as_slice()).collect();
     let by_edges = closed_shells(&polygons, |_| false);

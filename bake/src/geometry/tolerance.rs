@@ -24,7 +24,7 @@ pub(crate) const TRIPLE_PRODUCT: f64 = 1e-15;
 
 // Equal but for arithmetic: 1e-9.
 
-/// Corners that bend by less than this, as a sine, lie on the line between their neighbours.
+/// Corners with a smaller sine of their angle lie on the line between their neighbours.
 pub(crate) const STRAIGHT: f64 = 1e-9;
 
 /// How far the area of the hull may exceed that of what it is the hull of, relative, to be the same polygon.
@@ -36,15 +36,15 @@ pub(crate) const LONGER: f64 = 1e-9;
 /// How far from the edges of a face, relative to the mesh, its inside begins: faces that share a corner touch there.
 pub(crate) const INSIDE_A_FACE: f64 = 1e-9;
 
-/// A volume below this share of the area to the power of 3/2 is none: a sheet with two sides, for instance.
+/// A smaller volume, relative to the area to the power of 3/2, counts as zero, as that of a two-sided sheet.
 pub(crate) const NO_VOLUME: f64 = 1e-9;
 
 /// How far from the plane that cuts a geometry, relative to its extent, a corner still counts as on it: no slivers are
 /// made where a plane follows an edge.
 pub(crate) const ON_CUT: f64 = 1e-9;
 
-/// Hits of a ray that are this near each other, relative to their distance, are one; and so near its ends, relative to its
-/// length, nothing stands in its way.
+/// Hits of a ray within this distance of each other, relative to their distance, are one hit. Hits within this share of
+/// a segment's length from its ends do not count.
 pub(crate) const SAME_HIT: f64 = 1e-9;
 
 // What files store: f32, or what an exporter leaves of it.
@@ -53,8 +53,8 @@ pub(crate) const SAME_HIT: f64 = 1e-9;
 /// place of the f32 numbers that glTF stores.
 pub const FLATNESS: f64 = 2.0 * f32::EPSILON as f64;
 
-/// What is nearer to a face than this, relative to its extent or distance, may be part of it: its own elements are as far
-/// from it as corners that are kept in f32 may be from their plane.
+/// Points nearer to a face than this, relative to its extent or distance, may be part of it: f32 corners of its own
+/// elements are as far off its plane.
 pub(crate) const ON_FACE: f64 = 4.0 * FLATNESS;
 
 /// A shorter arc, in radians, does not determine on its own which of its sides is hidden; a face does. About the f32
@@ -72,7 +72,7 @@ pub(crate) const APART: f64 = 1e-6;
 /// several faces share are equal to the bit, but for those that lie on another's edge.
 pub(crate) const CLOSED: f64 = 1e-6;
 
-/// Steps between places that are smaller than this, relative to the extent, are rounding and no grid line.
+/// Smaller distances between positions, relative to the extent, are rounding and no grid line.
 pub(crate) const SAME_LINE: f64 = 1e-6;
 
 /// Lengths that differ by less than this, relative, are equal: the same shape in other units is cut in the same way.
@@ -84,11 +84,11 @@ pub(crate) const SIMILARITY: f64 = 1e-6;
 /// How far elements that were cut out of joined surfaces may lie off these, relative to the largest coordinate.
 pub(crate) const JOINED: f64 = 1e-6;
 
-/// How far in front of a surface the light that it emits is looked for, in diagonals of its part or shell: a panel that
-/// lies in a room's ceiling shines into the room. Larger than what f32 leaves of a plane.
+/// How far in front of an emitting surface its light is taken to start, in diagonals of its part or shell: a panel that
+/// lies in a room's ceiling emits into the room. Larger than the f32 rounding of a plane.
 pub(crate) const IN_FRONT: f64 = 1e-5;
 
-// What modelling tools and authors leave.
+// Inaccuracy of modelling tools and authors.
 
 /// How far, in steps of f32, the fourth corner of a quad may be off: each of the four corners was rounded.
 pub(crate) const ROUNDED_CORNERS: f64 = 4.0;

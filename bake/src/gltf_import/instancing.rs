@@ -5,7 +5,7 @@
 
 use super::accessors::{check_type, components};
 use super::document::{Document, label};
-use super::nodes::Placed;
+use super::nodes::PlacedNode;
 use equilux_formats::Result;
 use glam::{DAffine3, DQuat, DVec3};
 use gltf::accessor::{DataType, Dimensions};
@@ -17,7 +17,7 @@ pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 /// No scene has more: each exchanges light with all others, and an accessor without data could state any count.
 pub(super) const MOST_COPIES: usize = 1 << 14;
 
-impl Placed<'_> {
+impl PlacedNode<'_> {
     /// Whether its contents stand where the extension says.
     pub(super) fn is_instanced(&self) -> bool {
         self.node.extension_value(INSTANCING).is_some()

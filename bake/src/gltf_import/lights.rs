@@ -2,7 +2,7 @@
 
 use super::document::Document;
 use super::exporters::light_units;
-use super::nodes::Placed;
+use super::nodes::PlacedNode;
 use super::notes::Notes;
 use equilux_formats::{Camera, LightKind, PunctualLight, Result, Rgb};
 use glam::{DAffine3, DMat3, DVec3};
@@ -10,7 +10,7 @@ use gltf::khr_lights_punctual::{Kind, Light};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// The light at a node. The scale of the node does not act on its intensity (KHR_lights_punctual).
-pub(super) fn light(document: &Document, placed: &Placed, source: &Light) -> Result<PunctualLight> {
+pub(super) fn light(document: &Document, placed: &PlacedNode, source: &Light) -> Result<PunctualLight> {
     let wrong = |found: String, expected: &str| {
         document.error(format!("light {} with {found}", placed.name()), expected, "correct the light")
     };
@@ -57,7 +57,7 @@ pub(super) fn moved(light: &PunctualLight, placement: DAffine3, emission_scale: 
 }
 
 /// The camera at a node, if it is one this project can look through.
-pub(super) fn camera(document: &Document, placed: &Placed, notes: &mut Notes) -> Result<Option<Camera>> {
+pub(super) fn camera(document: &Document, placed: &PlacedNode, notes: &mut Notes) -> Result<Option<Camera>> {
     let Some(index) = placed.node.camera().map(|camera| camera.index()) else { return Ok(None) };
     // From the JSON, as the crate believes the stated type even where the object for it is missing.
     let Some(lens) = &document.gltf.as_json().cameras[index].perspective else {

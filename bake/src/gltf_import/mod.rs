@@ -44,7 +44,7 @@ use instancing::MOST_COPIES;
 use lights::{camera, light, moved};
 use materials::Paint;
 use meshes::Meshes;
-use nodes::{Placed, part_roots, subtree};
+use nodes::{PlacedNode, part_roots, subtree};
 use part_files::{PartFiles, no_surfaces};
 use parts::{Catalogue, Settled, settle, split};
 use repaint::{Look, LookRecipe};
@@ -76,13 +76,13 @@ struct Stage<'a> {
     meshes: Meshes<'a>,
     catalogue: Catalogue,
     /// What became of recipes met before; nothing if no face was left.
-    made: HashMap<Recipe, Option<Made>>,
+    made: HashMap<Recipe, Option<ImportedPart>>,
     scene: Scene,
 }
 
 /// A part, as it came from a recipe.
 #[derive(Clone)]
-struct Made {
+struct ImportedPart {
     part: PartId,
     /// Where it starts in the coordinates of its draft.
     start: DVec3,
@@ -105,7 +105,7 @@ struct Recipe {
 /// What stands at a node.
 enum Contents<'a> {
     /// Nodes with meshes, in the coordinates of the node.
-    Nodes(Vec<Placed<'a>>),
+    Nodes(Vec<PlacedNode<'a>>),
     /// A part file.
     File(PathBuf, Rc<Draft>),
 }
@@ -142,7 +142,7 @@ impl<'a> Stage<'a> {
     }
 
     /// Adds the part that `root` is, then whatever else stands below it.
-    fn add_root(&mut self, root: Placed<'a>) -> Result<()> {
+    fn add_root(&mut self, root: PlacedNode<'a>) -> Result<()> {
         let mut own = subtree(self.document, root.as_origin())?;
         own.retain(|placed| placed.extras.part.is_none() && !placed.is_instanced());
         let mut settings = Settings::default();
@@ -158,7 +158,7 @@ impl<'a> Stage<'a> {
     }
 
     /// Adds what is not a mesh of the root's part: a part file, copies of a mesh, a light, a camera.
-    fn add_other(&mut self, placed: &Placed<'a>) -> Result<()> {
+    fn add_other(&mut self, placed: &PlacedNode<'a>) -> Result<()> {
         if let Some(reference) = &placed.extras.part {
             let (path, draft) = self.part_files.draft(self.document, placed, reference)?;
             let lights = draft.lights.iter();
@@ -180,7 +180,7 @@ impl<'a> Stage<'a> {
 
     fn place_copies(
         &mut self,
-        placed: &Placed<'a>,
+        placed: &PlacedNode<'a>,
         settings: Settings,
         contents: &Contents<'a>,
     ) -> Result<()> {
@@ -214,7 +214,7 @@ impl<'a> Stage<'a> {
                 made
             }
         };
-        let Some(Made { part, start, paints, step }) = made else { return Ok(()) };
+        let Some(ImportedPart { part, start, paints, step }) = made else { return Ok(()) };
         self.scene.coordinate_step = self.scene.coordinate_step.max(step_after(step, root));
         self.part_files.asked.hear(look, &*paints);
         self.scene.instances.push(Instance {
@@ -233,7 +233,7 @@ impl<'a> Stage<'a> {
         settings: Settings,
         contents: &Contents<'a>,
         linear: DMat3,
-    ) -> Result<Option<Made>> {
+    ) -> Result<Option<ImportedPart>> {
         let (name, draft) = match contents {
             Contents::Nodes(nodes) => (instance.to_owned(), Rc::new(self.draft(nodes)?)),
             Contents::File(path, draft) => {
@@ -250,10 +250,10 @@ impl<'a> Stage<'a> {
         if id.index() == known && dropped != Dropped::default() {
             self.part_files.notes.add(name, remark(dropped));
         }
-        Ok(Some(Made { part: id, start, paints: paints.into(), step: draft.step }))
+        Ok(Some(ImportedPart { part: id, start, paints: paints.into(), step: draft.step }))
     }
 
-    fn draft(&mut self, nodes: &[Placed<'a>]) -> Result<Draft> {
+    fn draft(&mut self, nodes: &[PlacedNode<'a>]) -> Result<Draft> {
         let mut draft = Draft::default();
         for placed in nodes {
             let Some(mesh) = placed.node.mesh() else { continue };
@@ -268,7 +268,7 @@ impl<'a> Stage<'a> {
 }
 
 fn recipe(contents: &Contents, settings: Settings, linear: DMat3) -> Recipe {
-    let mesh = |placed: &Placed| {
+    let mesh = |placed: &PlacedNode| {
         let index = placed.node.mesh().map_or(usize::MAX, |mesh| mesh.index());
         (index, placed.placement.to_cols_array().map(f64::to_bits), placed.look.recipe())
     };

@@ -12,7 +12,7 @@ use std::rc::Rc;
 
 /// A node and what it inherits from the nodes above it.
 #[derive(Clone)]
-pub(super) struct Placed<'a> {
+pub(super) struct PlacedNode<'a> {
     pub(super) node: Node<'a>,
     pub(super) extras: Extras,
     /// Node coordinates → coordinates of whatever the walk began in.
@@ -21,7 +21,7 @@ pub(super) struct Placed<'a> {
     pub(super) look: Look,
 }
 
-impl<'a> Placed<'a> {
+impl<'a> PlacedNode<'a> {
     /// The same node as a walk sees it that starts in the node itself.
     pub(super) fn as_origin(&self) -> Self {
         Self { placement: DAffine3::IDENTITY, look: Look::default(), ..self.clone() }
@@ -51,14 +51,14 @@ impl<'a> Placed<'a> {
 }
 
 /// The root nodes of the scene, by their own transforms. Fails unless each node has one place in the hierarchy.
-pub(super) fn roots(document: &Document) -> Result<Vec<Placed<'_>>> {
+pub(super) fn roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
     let roots = root_nodes(document);
     check_tree(document, &roots)?;
     roots.into_iter().map(|node| above_roots(&node).child(document, node)).collect()
 }
 
-fn above_roots<'a>(any: &Node<'a>) -> Placed<'a> {
-    Placed {
+fn above_roots<'a>(any: &Node<'a>) -> PlacedNode<'a> {
+    PlacedNode {
         node: any.clone(),
         extras: Extras::default(),
         placement: DAffine3::IDENTITY,
@@ -67,7 +67,7 @@ fn above_roots<'a>(any: &Node<'a>) -> Placed<'a> {
 }
 
 /// The nodes that are parts: the roots, or what hangs below a root that only wraps the whole scene.
-pub(super) fn part_roots(document: &Document) -> Result<Vec<Placed<'_>>> {
+pub(super) fn part_roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
     let mut roots = roots(document)?;
     while let [wrapper] = roots.as_slice()
         && is_wrapper(wrapper)
@@ -77,7 +77,7 @@ pub(super) fn part_roots(document: &Document) -> Result<Vec<Placed<'_>>> {
     Ok(roots)
 }
 
-fn is_wrapper(placed: &Placed) -> bool {
+fn is_wrapper(placed: &PlacedNode) -> bool {
     let node = &placed.node;
     let holds = node.mesh().is_some() || node.camera().is_some() || node.light().is_some();
     !holds && !placed.extras.any() && node.children().len() > 0
@@ -85,7 +85,7 @@ fn is_wrapper(placed: &Placed) -> bool {
 
 /// `start` and all below it, parents before children. What hangs below a node with a `part` is not visited: the part's
 /// file stands there instead.
-pub(super) fn subtree<'a>(document: &'a Document, start: Placed<'a>) -> Result<Vec<Placed<'a>>> {
+pub(super) fn subtree<'a>(document: &'a Document, start: PlacedNode<'a>) -> Result<Vec<PlacedNode<'a>>> {
     let (mut visited, mut open) = (Vec::new(), vec![start]);
     while let Some(placed) = open.pop() {
         if placed.extras.part.is_none() {
@@ -96,7 +96,7 @@ pub(super) fn subtree<'a>(document: &'a Document, start: Placed<'a>) -> Result<V
     Ok(visited)
 }
 
-fn children<'a>(document: &Document, parent: &Placed<'a>) -> Result<Vec<Placed<'a>>> {
+fn children<'a>(document: &Document, parent: &PlacedNode<'a>) -> Result<Vec<PlacedNode<'a>>> {
     parent.node.children().map(|node| parent.child(document, node)).collect()
 }
 

@@ -6,7 +6,7 @@ use super::drafts::{Draft, Settings};
 use super::files::{Files, file_name};
 use super::lights::light;
 use super::meshes::Meshes;
-use super::nodes::{Placed, roots, subtree};
+use super::nodes::{PlacedNode, roots, subtree};
 use super::notes::Notes;
 use super::open;
 use super::repaint::Asked;
@@ -51,7 +51,7 @@ impl PartFiles {
     pub(super) fn draft(
         &mut self,
         from: &Document,
-        placed: &Placed,
+        placed: &PlacedNode,
         reference: &str,
     ) -> Result<(PathBuf, Rc<Draft>)> {
         if placed.node.mesh().is_some() || placed.node.children().len() > 0 {
@@ -105,7 +105,7 @@ impl PartFiles {
         document: &Document,
         meshes: &mut Meshes,
         draft: &mut Draft,
-        placed: &Placed,
+        placed: &PlacedNode,
     ) -> Result<()> {
         draft.settings.hear(Settings::of(&placed.extras), &placed.name(), &mut self.notes);
         if let Some(reference) = &placed.extras.part {

@@ -5,7 +5,7 @@
 
 use super::drafts::{Draft, Paints, Settings};
 use super::materials::{Paint, same_material};
-use super::surfaces::{Dropped, Seen, f64_spacing, has_area};
+use super::surfaces::{Dropped, FaceSet, f64_spacing, has_area};
 use crate::geometry::tolerance::SIMILARITY;
 use equilux_formats::{Part, PartId, Surface, TexturedTriangle};
 use glam::{DAffine3, DMat3, DVec3};
@@ -57,7 +57,7 @@ pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: Str
 
     let mut dropped = draft.dropped;
     dropped.without_area += draft.surfaces.len() - placed.len();
-    let (mut surfaces, mut seen, mut paints) = (Vec::new(), Seen::default(), Paints::default());
+    let (mut surfaces, mut seen, mut paints) = (Vec::new(), FaceSet::default(), Paints::default());
     let mut renumbered = vec![None; draft.paints.0.len()];
     for surface in placed {
         // Adding 0 turns −0 into 0, so that equal parts are equal bit by bit.

@@ -93,12 +93,12 @@ impl Welder {
 
 /// The faces met so far, by their corners, from whichever of them they start.
 #[derive(Default)]
-pub(super) struct Seen {
+pub(super) struct FaceSet {
     welder: Welder,
     faces: HashSet<[usize; 4]>,
 }
 
-impl Seen {
+impl FaceSet {
     /// Whether a face with these corners and this orientation is met for the first time.
     pub(super) fn first_time(&mut self, corners: &Corners) -> bool {
         let points = corners.as_slice();
@@ -114,7 +114,7 @@ impl Seen {
 }
 
 /// A triangle worth keeping.
-struct Kept {
+struct CleanTriangle {
     corners: [DVec3; 3],
     /// Where they lie in a lightmap.
     lightmap: Option<[DVec2; 3]>,
@@ -122,8 +122,8 @@ struct Kept {
     source: usize,
 }
 
-fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropped) {
-    let (mut kept, mut dropped, mut seen) = (Vec::new(), Dropped::default(), Seen::default());
+fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<CleanTriangle>, Dropped) {
+    let (mut kept, mut dropped, mut seen) = (Vec::new(), Dropped::default(), FaceSet::default());
     for (source, &corners) in triangles.corners.iter().enumerate() {
         let face = Corners::triangle(corners);
         if !has_area(&face, spacing) {
@@ -132,7 +132,7 @@ fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropped)
             dropped.duplicates += 1;
         } else {
             let lightmap = triangles.lightmap.as_ref().map(|places| places[source]);
-            kept.push(Kept { corners, lightmap, source });
+            kept.push(CleanTriangle { corners, lightmap, source });
         }
     }
     (kept, dropped)
@@ -140,7 +140,7 @@ fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<Kept>, Dropped)
 
 /// Pairs the halves of quads. Exporters write the two triangles of a quad one after the other, so there any flat convex
 /// quad is taken for one that was modelled; of what is left, lowest index first, only parallelograms are.
-fn pair(kept: &[Kept], step: f64) -> Vec<Surface> {
+fn pair(kept: &[CleanTriangle], step: f64) -> Vec<Surface> {
     let mut quads: Vec<Option<Quad>> = vec![None; kept.len()];
     let mut paired = vec![false; kept.len()];
     for first in 0..kept.len().saturating_sub(1) {
@@ -167,7 +167,7 @@ fn pair(kept: &[Kept], step: f64) -> Vec<Surface> {
         }
     }
     let surface = |corners, lightmap| Surface { lightmap, ..Surface::new(corners, MaterialId(0)) };
-    let made = |(at, kept): (usize, &Kept)| match quads[at] {
+    let made = |(at, kept): (usize, &CleanTriangle)| match quads[at] {
         Some((corners, lightmap)) => Some(surface(Corners::quad(corners), lightmap)),
         None => (!paired[at]).then(|| {
             let places = kept.lightmap.map(|[a, b, c]| [a, b, c, c]);
@@ -181,7 +181,7 @@ fn pair(kept: &[Kept], step: f64) -> Vec<Surface> {
 type Quad = ([DVec3; 4], Option<[DVec2; 4]>);
 
 /// The quad of which the two triangles are halves, starting at the first one's first corner.
-fn halves_of(halves: [&Kept; 2]) -> Option<Quad> {
+fn halves_of(halves: [&CleanTriangle; 2]) -> Option<Quad> {
     let [first, second] = halves.map(|half| half.corners);
     for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
         let (from, to, apex) = (first[i], first[(i + 1) % 3], first[(i + 2) % 3]);
@@ -253,7 +253,7 @@ struct Neighbours {
 
 impl Neighbours {
     /// Neighbours among the triangles that are not `paired` yet.
-    fn of(kept: &[Kept], paired: &[bool]) -> Self {
+    fn of(kept: &[CleanTriangle], paired: &[bool]) -> Self {
         let mut welder = Welder::default();
         let corners: Vec<[usize; 3]> =
             kept.iter().map(|kept| kept.corners.map(|corner| welder.number(corner))).collect();

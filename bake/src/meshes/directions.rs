@@ -49,17 +49,17 @@ impl Span {
 }
 
 /// How many boxes the next larger box holds: as many as are compared at once.
-const RUN: usize = 4;
+const LANES: usize = 4;
 
 /// Neighbouring boxes, coordinate by coordinate, one a lane.
 #[derive(Debug, Clone, Copy)]
-struct Run {
+struct SpanLanes {
     low: [Vec4; 3],
     high: [Vec4; 3],
 }
 
-impl Run {
-    /// A run of at most [`RUN`] spans; the rest meets nothing.
+impl SpanLanes {
+    /// A run of at most [`LANES`] spans; the rest meets nothing.
     fn new(spans: &[Span]) -> Self {
         let at = |lane: usize| spans.get(lane).unwrap_or(&Span::EMPTY);
         let lanes = |value: fn(&Span) -> f32| Vec4::from_array(std::array::from_fn(|lane| value(at(lane))));
@@ -87,7 +87,7 @@ impl Run {
 #[derive(Debug, Default)]
 pub struct Spans {
     /// Runs of the things' own spans, runs of the spans around those, and so on up to a single run.
-    levels: Vec<Vec<Run>>,
+    levels: Vec<Vec<SpanLanes>>,
 }
 
 impl Spans {
@@ -97,8 +97,12 @@ impl Spans {
         let mut spans;
         let mut below = things;
         while !below.is_empty() {
-            let runs: Vec<Run> = below.chunks(RUN).map(Run::new).collect();
-            spans = if runs.len() == 1 { vec![] } else { runs.iter().map(Run::whole).collect::<Vec<Span>>() };
+            let runs: Vec<SpanLanes> = below.chunks(LANES).map(SpanLanes::new).collect();
+            spans = if runs.len() == 1 {
+                vec![]
+            } else {
+                runs.iter().map(SpanLanes::whole).collect::<Vec<Span>>()
+            };
             levels.push(runs);
             below = &spans;
         }
@@ -118,7 +122,7 @@ impl Spans {
     fn any_of(&self, level: usize, run: usize, sought: &Span, found: &mut impl FnMut(usize) -> bool) -> bool {
         let mut meeting = self.levels[level][run].meeting(sought);
         while meeting != 0 {
-            let index = run * RUN + meeting.trailing_zeros() as usize;
+            let index = run * LANES + meeting.trailing_zeros() as usize;
             meeting &= meeting - 1;
             if if level == 0 { found(index) } else { self.any_of(level - 1, index, sought, found) } {
                 return true;

@@ -1,29 +1,30 @@
-//! Many files baked one after the other; a bad one does not keep the others from being baked.
+//! Bakes many files one after the other. A faulty file does not prevent the others from being baked.
 
 use crate::gltf_import::{import_scene, is_gltf};
 use crate::monitor::Monitor;
 use crate::oven::prepare::PreparedPart;
 use crate::oven::prepare::{Preparation, prepare};
 use crate::oven::{Baked, Oven};
-use equilux_formats::{Error, Problem, Result, RowSumDefect, Store, Swept, unless_stopped};
+use equilux_formats::{Error, Evicted, Problem, Result, RowSumDefect, Store, unless_stopped};
 use serde::Serialize;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use walkdir::WalkDir;
 
-/// What became of all files.
+/// The outcome of a batch.
 #[derive(Debug, Serialize)]
 pub struct Batch {
     /// One entry a file, in the order of the inputs.
     pub files: Vec<FileOutcome>,
     /// Wall time.
     pub seconds: f64,
-    /// What was dropped from the cache to keep within its limit, if it has one.
-    pub swept: Option<Swept>,
+    /// The files evicted from the cache, if it has a size limit; `swept` in JSON.
+    #[serde(rename = "swept")]
+    pub evicted: Option<Evicted>,
 }
 
-/// What became of one file.
+/// The outcome of one file.
 #[derive(Debug, Serialize)]
 pub struct FileOutcome {
     /// The file.
@@ -39,7 +40,7 @@ pub struct FileOutcome {
     pub sources: Vec<PathBuf>,
 }
 
-/// What became of one part.
+/// The outcome of one part.
 #[derive(Debug, Serialize)]
 pub struct PartOutcome {
     /// Its name.
@@ -114,7 +115,7 @@ pub fn find_scenes(inputs: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Bake every part of every file.
+/// Bakes every part of every file.
 pub fn bake_files(files: &[PathBuf], wanted: &Preparation, store: &Store, monitor: &Monitor) -> Batch {
     let start = Instant::now();
     let mut outcomes = Vec::new();
@@ -131,7 +132,7 @@ pub fn bake_files(files: &[PathBuf], wanted: &Preparation, store: &Store, monito
         }
         outcomes.push(outcome);
     }
-    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64(), swept: None }
+    Batch { files: outcomes, seconds: start.elapsed().as_secs_f64(), evicted: None }
 }
 
 fn bake_file(
@@ -160,7 +161,7 @@ fn bake_file(
     Ok(())
 }
 
-/// A sentence for each cached file that could not be used since the last call.
+/// A sentence for each cached file found damaged since the last call.
 pub fn damage_notes(store: &Store) -> Vec<String> {
     let note = |damage: &Problem| format!("{}: {}; it was made again", damage.file.display(), damage.found);
     store.take_damages().iter().map(note).collect()

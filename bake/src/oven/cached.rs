@@ -1,4 +1,4 @@
-//! Take from the cache, or compute and keep; and say which and why, from the same manifest that makes the key.
+//! Takes results from the cache, or computes and caches them. The reasons derive from the manifest that the key derives from.
 
 use crate::monitor::Monitor;
 use equilux_formats::{Key, Lookup, Manifest, Result, Store, Stored, Turn};
@@ -9,9 +9,9 @@ use std::time::Duration;
 pub enum Origin {
     /// It was in the cache.
     Reused,
-    /// It was in the cache, made from something else, but that changes nothing; what changed.
+    /// It was in the cache, made from other inputs with the same result; the difference of the inputs.
     Unchanged(String),
-    /// It was computed, for this reason.
+    /// It was computed for this reason.
     Computed(String),
 }
 
@@ -32,7 +32,7 @@ impl std::fmt::Display for Origin {
     }
 }
 
-/// Where [`cached`] would take the value from.
+/// The origin that [`cached`] would return, without computing anything.
 pub fn foreseen<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> Origin {
     look_up::<T>(store, name, manifest).map_or_else(Origin::Computed, |_| Origin::Reused)
 }
@@ -49,23 +49,23 @@ fn look_up<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> std::re
     }
 }
 
-/// How often it is asked whether another process is done.
+/// Interval between checks whether another process is done.
 const PATIENCE: Duration = Duration::from_millis(50);
 
-/// How a value was made that the cache did not have.
+/// A value that was not in the cache.
 #[derive(Debug)]
-pub enum Made<T> {
-    /// From the start.
+pub enum NewValue<T> {
+    /// Computed from scratch.
     Whole(T),
-    /// By bringing an older one up to date; how much of it, for a person.
+    /// An updated older value, and a description of how much of it was computed.
     Revised(T, String),
-    /// It is what already lies under this key.
+    /// Equal to the value already cached under this key.
     AsUnder(Key, T),
 }
 
-/// The value that `manifest` describes; `name` is what its older versions were called. Of all processes that share the
-/// cache one computes it, the others wait for that one.
-/// It must not ask for anything cached itself: see [`Store::try_turn`].
+/// The value that `manifest` describes, and its origin. `name` identifies its older versions. Of all processes that
+/// share the cache, one computes the value and the others wait for it. `compute` must not use the cache itself: see
+/// [`Store::try_turn`].
 pub fn cached<T: Stored>(
     store: &Store,
     name: &str,
@@ -73,35 +73,35 @@ pub fn cached<T: Stored>(
     monitor: &Monitor,
     compute: impl FnOnce() -> Result<T>,
 ) -> Result<(T, Origin)> {
-    cached_or_revised(store, name, manifest, monitor, || compute().map(Made::Whole))
+    cached_or_revised(store, name, manifest, monitor, || compute().map(NewValue::Whole))
 }
 
-/// The same where `make` may know an older value to start from.
+/// Like [`cached`], for values that `make` may derive from an older value.
 pub fn cached_or_revised<T: Stored>(
     store: &Store,
     name: &str,
     manifest: &Manifest,
     monitor: &Monitor,
-    make: impl FnOnce() -> Result<Made<T>>,
+    make: impl FnOnce() -> Result<NewValue<T>>,
 ) -> Result<(T, Origin)> {
     let mut found = look_up(store, name, manifest);
     let mut _turn = None;
     if found.is_err() {
         _turn = wait_for_turn(store, name, manifest, monitor);
-        // Another process may have made it meanwhile.
+        // Another process may have computed it in the meantime.
         found = look_up(store, name, manifest);
     }
     let (value, origin) = match found {
         Ok(value) => (value, Origin::Reused),
         Err(reason) => {
             let made = make()?;
-            if let Made::Whole(value) | Made::Revised(value, _) = &made {
+            if let NewValue::Whole(value) | NewValue::Revised(value, _) = &made {
                 store.save(manifest, value)?;
             }
             match made {
-                Made::Whole(value) => (value, Origin::Computed(reason)),
-                Made::Revised(value, how) => (value, Origin::Computed(format!("{reason}; {how}"))),
-                Made::AsUnder(key, value) => {
+                NewValue::Whole(value) => (value, Origin::Computed(reason)),
+                NewValue::Revised(value, how) => (value, Origin::Computed(format!("{reason}; {how}"))),
+                NewValue::AsUnder(key, value) => {
                     store.save_alias(manifest, &key)?;
                     (value, Origin::Unchanged(reason))
                 }
@@ -112,7 +112,7 @@ pub fn cached_or_revised<T: Stored>(
     Ok((value, origin))
 }
 
-/// The turn to compute; none if the monitor is stopped before another process is done.
+/// Waits for the turn to compute; none if the monitor is stopped before another process is done.
 fn wait_for_turn(store: &Store, name: &str, manifest: &Manifest, monitor: &Monitor) -> Option<Turn> {
     let key = manifest.key();
     while !monitor.stopped() {

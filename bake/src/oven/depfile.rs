@@ -1,13 +1,13 @@
 //! A dependency file as Make, Ninja and CMake read it: one line `target: source source …`.
 //!
-//! In such a line a space ends a name, `#` begins a comment and `$` a variable. A backslash before a space or a `#`, and a
-//! second `$`, take that meaning away; backslashes that stand before a space double, as compilers write it and Ninja's
-//! manual asks. Names with line breaks cannot be written at all.
+//! In such a line a space ends a name, `#` begins a comment and `$` a variable. A backslash escapes a space or `#`, and
+//! `$$` is a dollar sign. Backslashes before a space are doubled, as compilers do and Ninja's manual requires. Names
+//! with line breaks cannot be represented.
 
 use equilux_formats::{Error, Result, write_whole};
 use std::path::{Path, PathBuf};
 
-/// Write to `path` that `target` was made from `sources`, each named as the program knows it.
+/// Writes to `path` that `target` depends on `sources`. Paths are written as given.
 pub fn write(path: &Path, target: &Path, sources: &[PathBuf]) -> Result<()> {
     let line = line(target, sources);
     write_whole(path, |out| out.write_all(&line)).map_err(|error| {

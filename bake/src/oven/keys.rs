@@ -1,9 +1,9 @@
-//! The keys of everything that a run on a scene looks up in the cache, computed without any of it: they decide what in a
-//! cache is still needed.
+//! The keys of everything that a run on a scene looks up in the cache, computed without the results themselves. Cache
+//! eviction keeps the files of these keys.
 //!
 //! There is a key for each part and for its light, and for each instance a key for the block that couples it with all
-//! others, for that with the sky, for its own block with what stands inside it, and for its light with that. Not every
-//! instance has all of these; a key without a file does no harm.
+//! others, for the one with the sky, for its self block corrected for occluders inside it, and for its light with that
+//! block. Not every instance has all of these; keys without a file are harmless.
 
 use crate::elements::repainted;
 use crate::geometry::rounded_placement::RoundedPlacement;
@@ -11,22 +11,21 @@ use crate::gltf_import::import_scene;
 use crate::oven::prepare::{Preparation, Prepared, prepare};
 use crate::oven::{KERNEL_VERSION, geometry_manifest, light_manifest};
 use crate::treecode::Resolution;
-use equilux_formats::{Instance, Key, Manifest, Result, Store, Swept};
+use equilux_formats::{Evicted, Instance, Key, Manifest, Result, Store};
 use glam::DAffine3;
 use std::collections::HashSet;
 use std::path::PathBuf;
 
 /// The block between an instance and all others, in manifests and in the cache.
 pub const COUPLING: &str = "coupling";
-/// An instance's own block with what stands inside it, in manifests and in the cache.
+/// The self block of an instance, corrected for occluders inside it, in manifests and in the cache.
 pub const CORRECTED: &str = "corrected self block";
 
-/// Cells along each edge of the cube that a sky is cut into: 7.5° each.
+/// Cells along each edge of the cube map of a sky: 7.5° each.
 pub const SKY_CELLS: usize = 12;
 
-/// Drop from the cache whatever none of the scenes in `files` asks for. Fails and drops nothing if one of them cannot be
-/// read, for then it is not known what it needs.
-pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Result<Swept> {
+/// Removes from the cache what none of the scenes in `files` uses. Fails and removes nothing if one of them cannot be read.
+pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Result<Evicted> {
     let mut keys = HashSet::new();
     for file in files {
         keys.extend(keys_of(&prepare(&import_scene(file)?, wanted)?, wanted.resolution, store));
@@ -34,7 +33,7 @@ pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Re
     store.keep_only(&keys)
 }
 
-/// The keys under which `assemble` looks for the parts of a scene and for what couples them.
+/// The keys that `assemble` looks up for the parts of a scene and their couplings.
 pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashSet<Key> {
     let part_keys: Vec<Key> =
         scene.parts.iter().map(|part| geometry_manifest(part, resolution).key()).collect();
@@ -43,10 +42,10 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
         let light = light_manifest(key.into(), &part.optics, part.solver);
         keys.extend([key, light.key()]);
     }
-    let parts: Vec<Known> = part_keys
+    let parts: Vec<BakedKey> = part_keys
         .iter()
         .zip(&scene.parts)
-        .map(|(&key, part)| Known { key, senders: part.geometry.clusters.nodes() })
+        .map(|(&key, part)| BakedKey { key, senders: part.geometry.clusters.nodes() })
         .collect();
     for number in 0..scene.instances.len() {
         let key = |what| placed_manifest(&scene.instances, &parts, resolution, number, what).key();
@@ -62,50 +61,50 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
     keys
 }
 
-/// What manifests of blocks tell of a part.
+/// The fields of a part that a block's manifest records.
 #[derive(Debug, Clone, Copy)]
-pub struct Known {
+pub struct BakedKey {
     /// The key of its form factors.
     pub key: Key,
     /// The number of its senders, elements and clusters.
     pub senders: usize,
 }
 
-/// Another instance as one sees it: what a manifest of a block tells of it, so that of an older block it is known what it
-/// was made among.
+/// A part and its placement relative to an instance. A block's manifest records one for every other instance, so that
+/// an older block can be compared with the present scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub struct Seen {
+pub struct RelativePlacement {
     /// Its part.
     pub part: Key,
     /// The number of its senders.
     pub senders: usize,
-    /// Its placement as seen from the one.
+    /// Its placement in the coordinates of that instance.
     placement: RoundedPlacement,
 }
 
-impl Seen {
-    /// A part at a place.
-    pub fn new(part: Known, placement: DAffine3) -> Self {
+impl RelativePlacement {
+    /// A part with its relative placement.
+    pub fn new(part: BakedKey, placement: DAffine3) -> Self {
         Self { part: part.key, senders: part.senders, placement: placement.into() }
     }
 
-    /// Where it stands, as seen from the one.
+    /// Its placement in the coordinates of that instance.
     pub fn placement(&self) -> DAffine3 {
         self.placement.into()
     }
 }
 
-impl std::fmt::Display for Seen {
+impl std::fmt::Display for RelativePlacement {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} {} {}", self.part, self.senders, self.placement.exponent)?;
         self.placement.steps.iter().try_for_each(|step| write!(f, " {step}"))
     }
 }
 
-impl std::str::FromStr for Seen {
+impl std::str::FromStr for RelativePlacement {
     type Err = ();
 
-    /// Reads what is displayed.
+    /// Parses the displayed form.
     fn from_str(text: &str) -> std::result::Result<Self, ()> {
         let mut words = text.split(' ');
         let mut next = || words.next().ok_or(());
@@ -120,11 +119,11 @@ impl std::str::FromStr for Seen {
     }
 }
 
-/// Everything that a block of an instance depends on: its part, and every other instance, its part and where it stands as
-/// seen from this one. `parts` tells of the parts' own form factors.
+/// The inputs of a block of an instance: its part, and the part and relative placement of every other instance. `parts`
+/// are the baked parts by number, and `what` is the kind of block.
 pub fn placed_manifest(
     instances: &[Instance],
-    parts: &[Known],
+    parts: &[BakedKey],
     resolution: Resolution,
     instance: usize,
     what: &str,
@@ -134,39 +133,41 @@ pub fn placed_manifest(
         .setting("kernel", KERNEL_VERSION)
         .setting("resolution", resolution)
         .digest("the part", parts[instances[instance].part.index()].key);
-    for (number, seen) in seen_from(instances, parts, instance) {
+    for (number, seen) in placements_from(instances, parts, instance) {
         manifest = manifest.detail(format!("instance {number} ({})", instances[number].name), seen);
     }
     manifest
 }
 
-/// The same of the block between the sky's cells and an instance, and where the instance itself stands: the sky does not turn
-/// with it.
+/// The inputs of the block between the sky's cells and an instance: those of [`placed_manifest`] and the instance's own
+/// placement, because the sky does not turn with it.
 pub fn sky_manifest(
     instances: &[Instance],
-    parts: &[Known],
+    parts: &[BakedKey],
     resolution: Resolution,
     instance: usize,
 ) -> Manifest {
     let own = &instances[instance];
     placed_manifest(instances, parts, resolution, instance, "sky")
         .setting("sky's cells", SKY_CELLS)
-        .setting("placement", Seen::new(parts[own.part.index()], own.placement))
+        .setting("placement", RelativePlacement::new(parts[own.part.index()], own.placement))
 }
 
-/// Every other instance by its number, as one instance sees it.
-pub fn seen_from<'a>(
+/// Number and relative placement of every other instance.
+pub fn placements_from<'a>(
     instances: &'a [Instance],
-    parts: &'a [Known],
+    parts: &'a [BakedKey],
     instance: usize,
-) -> impl Iterator<Item = (usize, Seen)> + 'a {
+) -> impl Iterator<Item = (usize, RelativePlacement)> + 'a {
     let inverse = instances[instance].placement.inverse();
     let others = instances.iter().enumerate().filter(move |&(n, _)| n != instance);
-    others.map(move |(n, other)| (n, Seen::new(parts[other.part.index()], inverse * other.placement)))
+    others.map(move |(n, other)| {
+        (n, RelativePlacement::new(parts[other.part.index()], inverse * other.placement))
+    })
 }
 
-/// The other instances that a manifest of a block tells of, by their numbers; none if it is not such a manifest.
-pub fn seen_in(manifest: &Manifest) -> Option<Vec<(usize, Seen)>> {
+/// Numbers and relative placements of the other instances that a block's manifest records; none if it is not such a manifest.
+pub fn placements_in(manifest: &Manifest) -> Option<Vec<(usize, RelativePlacement)>> {
     let read = |(label, text): (&str, &str)| {
         let number = label.strip_prefix("instance ")?.split(' ').next()?.parse().ok()?;
         Some((number, text.parse().ok()?))

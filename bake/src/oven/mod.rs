@@ -1,4 +1,4 @@
-//! Prepared part → [`BakedPart`]: its own block of form factors and its local equilibrium, from the cache if there.
+//! Bakes parts: computes the self block and local equilibrium of a part, or takes them from the cache.
 
 pub mod batch;
 pub mod cached;
@@ -9,7 +9,7 @@ pub mod stamp;
 
 use crate::elements::{ElementSize, repainted};
 use crate::equilibrium::endless::endless_in_block;
-use crate::equilibrium::outside::answers;
+use crate::equilibrium::outside::boundary_responses;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
 use crate::treecode::{Request, Resolution, block};
@@ -28,7 +28,7 @@ use std::time::{Duration, Instant};
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
 pub const KERNEL_VERSION: u32 = 6;
 
-/// A baked part and how it came about.
+/// A baked part, with origins and times.
 #[derive(Debug)]
 pub struct Baked {
     /// The part.
@@ -45,21 +45,21 @@ pub struct Baked {
     pub light_time: Duration,
 }
 
-/// What surrounds the baking of a part.
+/// The settings and services for baking parts.
 #[derive(Debug)]
 pub struct Oven<'a> {
     /// The cache.
     pub store: &'a Store,
-    /// The file that the parts come from, for messages and for remembering what was baked last.
+    /// The file that the parts come from, for messages and for the names of cached results.
     pub file: &'a Path,
     /// How exactly form factors are kept.
     pub resolution: Resolution,
-    /// Progress and the wish to stop.
+    /// Progress, and the request to stop.
     pub monitor: &'a Monitor,
 }
 
 impl Oven<'_> {
-    /// Read at once what the cache has of these parts: [`Oven::bake`] asks for one after the other.
+    /// Reads the cached results of these parts in parallel, for later calls of [`Oven::bake`].
     pub fn read_ahead(&self, parts: &[PreparedPart]) {
         let of = |part: &PreparedPart| {
             let key = geometry_manifest(part, self.resolution).key();
@@ -70,8 +70,8 @@ impl Oven<'_> {
         self.store.read_ahead::<BakedLight>(&lights);
     }
 
-    /// Bake one part, or take from the cache what is there. Fails if the monitor was stopped before its form factors were
-    /// known.
+    /// Bakes one part, or takes its results from the cache. Fails if the monitor was stopped before its form factors
+    /// were complete.
     pub fn bake(&self, part: &PreparedPart) -> Result<Baked> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
@@ -113,8 +113,8 @@ impl Oven<'_> {
         Ok(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time })
     }
 
-    /// The light of a baked part on its own as an instance has it repainted, and where that came from; none if the part's
-    /// serves: it tells how the part answers light, which depends on reflectance alone.
+    /// The local equilibrium of a repainted instance, and its origin; none if the reflectance is that of the part, so
+    /// that the factors and boundary responses of the part apply.
     pub fn relight(&self, baked: &Baked, instance: &Instance) -> Result<Option<(LocalEquilibrium, Origin)>> {
         let part = &baked.part;
         let optics = repainted(&part.geometry, &part.optics, &part.tints, &instance.repainted);
@@ -134,7 +134,8 @@ impl Oven<'_> {
         self.light(&unlit, &optics, material).map(Some)
     }
 
-    /// The light of a part with these optics. `material` names that of an element, for messages.
+    /// The local equilibrium of a part with these optics, and its origin. `material` returns the material name of an
+    /// element, for messages.
     fn light(
         &self,
         part: &Unlit,
@@ -154,7 +155,7 @@ impl Oven<'_> {
         Ok((light.local, origin))
     }
 
-    /// Where the form factors of a part would come from. Computes none of them.
+    /// The origin that the form factors of a part would have. Computes none of them.
     pub fn foresee(&self, part: &PreparedPart) -> Origin {
         let manifest = geometry_manifest(part, self.resolution);
         foreseen::<BakedGeometry>(self.store, &self.name(part, "form factors"), &manifest)
@@ -172,7 +173,8 @@ impl Oven<'_> {
         Error::new(
             self.file,
             format!(
-                "part `{part}` is closed, reflects everything and emits (material `{material}`): its light grows without end"
+                "no equilibrium exists: part `{part}` is closed, reflects everything and emits (material `{material}`), so that its \
+                 light grows without end"
             ),
             "a reflectance below 1 or an opening somewhere",
             "lower a base colour below 1, or switch the emission off",
@@ -180,10 +182,10 @@ impl Oven<'_> {
     }
 }
 
-/// A part whose form factors are known, and what it is called.
+/// A part with form factors, before its local equilibrium is solved.
 struct Unlit<'a> {
     name: &'a str,
-    /// What its light is called in the cache.
+    /// The name of its light in the cache.
     what: &'a str,
     key: Key,
     geometry: &'a Geometry,
@@ -191,7 +193,7 @@ struct Unlit<'a> {
     solver: LocalSolver,
 }
 
-/// The part's light with nothing arriving from outside, its answers to what arrives, and what its solver wants kept.
+/// Solves the local equilibrium, and computes its boundary responses and the factors of a direct solver.
 pub fn local_equilibrium(
     block: &Rows,
     geometry: &Geometry,
@@ -202,15 +204,15 @@ pub fn local_equilibrium(
     let factors = factorise(block, clusters, &optics.reflectance, solver);
     let system = LocalSystem::new(block, clusters, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
-    let answers = answers(&system, geometry);
+    let answers = boundary_responses(&system, geometry);
     LocalEquilibrium { solver, radiosity, factors, answers }
 }
 
-/// Everything that the part's own form factors depend on, and nothing else. Sizes are in the part's own units, so that it is baked
-/// once however large it stands; reasons mention them in metres of the scene.
+/// The inputs of a part's form factors, and nothing else. Sizes are in the part's own units, so that instances of any
+/// scale share them; reasons give sizes in metres of the scene.
 pub fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifest {
     let own_size = match part.element_size.in_units_of(part.unit) {
-        // Scales are f32: six digits are the same however they are rounded.
+        // Scales are f32: six digits do not depend on their rounding.
         ElementSize::Metres(size) => format!("{size:.5e}"),
         ElementSize::Mesh => "mesh".into(),
     };
@@ -222,7 +224,7 @@ pub fn geometry_manifest(part: &PreparedPart, resolution: Resolution) -> Manifes
         .digest("geometry", geometry_digest(&part.geometry))
 }
 
-/// Everything that the part's own light depends on.
+/// The inputs of a part's local equilibrium.
 pub fn light_manifest(form_factors: Digest, optics: &Optics, solver: LocalSolver) -> Manifest {
     Manifest::new()
         .digest("form factors", form_factors)
@@ -231,7 +233,7 @@ pub fn light_manifest(form_factors: Digest, optics: &Optics, solver: LocalSolver
         .setting("local solver", format!("{solver:?}"))
 }
 
-/// The geometry as form factors know it: they stay when a wall gets another material.
+/// The geometry without materials, on which form factors do not depend.
 fn without_materials(geometry: &Geometry) -> Geometry {
     let bare = |element: &Element| Element { material: MaterialId(0), ..*element };
     Geometry {

@@ -1,4 +1,5 @@
-//! Scene → parts ready to bake: elements of the chosen size, or cells that planes cut out of the whole scene.
+//! Prepares the parts of a scene for baking: cuts them into elements of the chosen size, or divides the whole scene
+//! into cells by planes.
 
 use crate::elements::bisect::{Cut, bisect, cut_all};
 use crate::elements::clusters;
@@ -14,15 +15,15 @@ use equilux_formats::{
 };
 use glam::{DAffine3, DVec3};
 
-/// What a person chooses about elements and parts.
+/// The settings for elements and parts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preparation {
     /// Element size, metres of the scene where a part stands largest; none to let the scene decide. A part's own
     /// `element_size` comes first.
     pub element_size: Option<ElementSize>,
-    /// What is a part.
+    /// How the scene is divided into parts.
     pub division: Division,
-    /// How exactly form factors are kept.
+    /// The resolution of form factors.
     pub resolution: Resolution,
     /// Local solver; none to let the part's size decide. A part's own `local_solver` comes first.
     pub local_solver: Option<LocalSolver>,
@@ -43,14 +44,14 @@ impl Default for Preparation {
 /// The default tolerance of form factors, a share of the mean light.
 pub const TOLERANCE: f64 = 0.01;
 
-/// What is a part.
+/// How a scene is divided into parts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Division {
-    /// The scene's root nodes.
+    /// By the scene's root nodes.
     Authored,
-    /// This many cells, each time the largest cut at the median of its longest axis.
+    /// Into this many cells: repeatedly halves the largest at the median of its longest axis.
     Bisect(usize),
-    /// The cells between these planes.
+    /// Into the cells between these planes.
     Cuts(Vec<Cut>),
 }
 
@@ -61,7 +62,7 @@ pub struct Prepared {
     pub parts: Vec<PreparedPart>,
     /// The parts placed.
     pub instances: Vec<Instance>,
-    /// The element size in force where a part asks for none of its own.
+    /// The element size of parts without one of their own.
     pub element_size: ElementSize,
 }
 
@@ -81,7 +82,7 @@ pub struct PreparedPart {
     pub geometry: Geometry,
     /// Reflectance and emission of the elements.
     pub optics: Optics,
-    /// What textures make of these, one row an element.
+    /// The factors that textures multiply these by, one row an element.
     pub tints: Tints,
     /// The materials that elements name.
     pub materials: Vec<Material>,
@@ -93,10 +94,11 @@ pub struct PreparedPart {
     pub solver: LocalSolver,
 }
 
-/// The most elements a part may have: ids are 32 bits, and a matrix of this many rows no machine holds.
+/// The largest number of elements of a part: ids are 32 bits, and no machine holds a matrix of this many rows.
 const MOST_ELEMENTS: u128 = 4_000_000;
 
-/// Give every part its elements. Fails where the element size asks for more of them than can be.
+/// Cuts every part into elements. Fails if the element size gives a part more than 4 million of them, or if f32
+/// coordinates are too coarse.
 pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     let scales = largest_scales(scene);
     let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene, &scales));
@@ -154,10 +156,10 @@ fn placed_area(scene: &Scene, scales: &[f64]) -> f64 {
     parts.map(|part| area(&scene.parts[part]) * scales[part].powi(2)).sum()
 }
 
-/// Coordinates in f32 must tell elements apart. Steps that are larger than this share of an element are worth a note.
+/// Coordinate steps of f32 above this share of the element size are noted.
 const NOTED_STEP: f64 = 0.01;
 
-/// Refuses a scene of which f32 cannot tell elements apart.
+/// Refuses a scene whose f32 coordinates are coarser than its elements.
 fn refuse_lost_digits(scene: &Scene, size: ElementSize, scales: &[f64]) -> Result<()> {
     let metres = match size {
         ElementSize::Metres(metres) => metres,
@@ -172,18 +174,18 @@ fn refuse_lost_digits(scene: &Scene, size: ElementSize, scales: &[f64]) -> Resul
     }
     Err(Error::new(
         &scene.file,
-        format!("coordinates so large that f32 tells places {} m apart at best", scene.coordinate_step),
+        format!("coordinates so large that f32 represents them in steps of {} m", scene.coordinate_step),
         format!("at most the size of elements, {metres} m"),
         "move the scene close to the origin",
     ))
 }
 
-/// A sentence, if elements of this size are noticeably distorted by what f32 leaves of the scene's coordinates.
+/// A note, if the f32 rounding of the scene's coordinates distorts elements of this size noticeably.
 pub fn lost_digits_note(scene: &Scene, size: ElementSize) -> Option<String> {
     let ElementSize::Metres(metres) = size else { return None };
     (scene.coordinate_step > NOTED_STEP * metres).then(|| {
         format!(
-            "coordinates are so large that f32 tells places {:.1e} m apart at best, beside elements of {size}: shapes and \
+            "coordinates are so large that f32 represents them in steps of {:.1e} m, with elements of {size}: shapes and \
              places are rounded; move the scene close to the origin",
             scene.coordinate_step
         )
@@ -210,7 +212,7 @@ fn refuse_too_many(scene: &Scene, part: &Part, elements: u128, size: ElementSize
     Err(Error::new(&scene.file, found, format!("at most {MOST_ELEMENTS:e} elements a part"), remedy))
 }
 
-/// The whole scene as one geometry, cut into cells; each cell is a part that stands once.
+/// Merges the scene into one geometry and divides it into cells; each cell is a part with one instance.
 fn divided(
     authored: &Prepared,
     wanted: &Preparation,

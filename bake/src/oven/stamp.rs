@@ -6,12 +6,12 @@ use std::io;
 use std::path::Path;
 use std::time::SystemTime;
 
-/// Fail where a stamp or a dependency file could not be written, before hours are spent. Leaves nothing behind.
+/// Checks before a long run that a stamp or dependency file can be written to `path`. Leaves nothing behind.
 pub fn check(path: &Path) -> Result<()> {
     check_writable_beside(path).map_err(|error| unusable(path, &error))
 }
 
-/// Make the file at `path` as new as now, empty if it was not there; content that it has stays.
+/// Sets the modification time of the file at `path` to now, and creates an empty file if there is none.
 pub fn touch(path: &Path) -> Result<()> {
     let file = File::options().create(true).append(true).open(path);
     file.and_then(|file| file.set_modified(SystemTime::now())).map_err(|error| unusable(path, &error))

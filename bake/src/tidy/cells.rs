@@ -3,7 +3,7 @@
 //! All corners are in the coordinates of the surface's part.
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::polygon::{Polygon, Side, clip};
+use crate::geometry::polygon::{Polygon, Side, clip, quads_and_triangles};
 use equilux_formats::{Corners, Part, Surface};
 use glam::{DVec2, DVec3};
 
@@ -120,27 +120,13 @@ impl Cell {
 
     /// The cell as surfaces of three or four corners that are otherwise like `whole`.
     fn surfaces(&self, whole: &Surface) -> Vec<Surface> {
-        let pieces = quads(&self.corners).into_iter().map(|corners| Surface {
+        let pieces = quads_and_triangles(&self.corners).into_iter().map(|corners| Surface {
             lightmap: whole.lightmap.map(|places| places_of(&corners, &whole.corners, places)),
             back_hidden: whole.back_hidden || !(self.front && self.back),
             ..Surface::new(corners, whole.material)
         });
         pieces.map(|piece| if self.front { piece } else { piece.flipped() }).collect()
     }
-}
-
-/// A convex polygon as quads, and a triangle where corners are left.
-fn quads(corners: &[DVec3]) -> Vec<Corners> {
-    let mut pieces = Vec::new();
-    let mut next = 1;
-    while next + 2 < corners.len() {
-        pieces.push(Corners::quad([corners[0], corners[next], corners[next + 1], corners[next + 2]]));
-        next += 2;
-    }
-    if next + 1 < corners.len() {
-        pieces.push(Corners::triangle([corners[0], corners[next], corners[next + 1]]));
-    }
-    pieces
 }
 
 /// Where the corners of a piece lie in the lightmap of the whole, on the affine map of its first three corners.

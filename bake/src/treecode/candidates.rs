@@ -7,7 +7,7 @@ use crate::geometry::box_tree::Inside;
 use crate::geometry::shaft::Shaft;
 use crate::geometry::tolerance::ON_FACE;
 use crate::world::occluders::{Shape, Together};
-use crate::world::{Node, World};
+use crate::world::{Sender, World};
 use equilux_formats::{Face, FaceId};
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -70,17 +70,17 @@ impl<'a> Candidates<'a> {
     }
 
     /// What of `list` can stand between viewers and sender.
-    pub fn narrow(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node) -> Verdict {
+    pub fn narrow(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Sender) -> Verdict {
         let size = viewers.diameter.max(sender.bounds.diagonal());
         self.filter(list, viewers, sender, OPEN_ABOVE * size)
     }
 
     /// The same down to single occluders.
-    pub fn occluders(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node) -> Verdict {
+    pub fn occluders(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Sender) -> Verdict {
         self.filter(list, viewers, sender, 0.0)
     }
 
-    fn filter(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Node, open_above: f64) -> Verdict {
+    fn filter(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Sender, open_above: f64) -> Verdict {
         if list.is_empty() {
             return Verdict::Between(list);
         }
@@ -162,7 +162,7 @@ struct Between<'a> {
 
 impl<'a> Between<'a> {
     #[inline(always)]
-    fn new(world: &'a World, viewers: &'a Viewers, sender: &Node, corners: &'a [DVec3]) -> Self {
+    fn new(world: &'a World, viewers: &'a Viewers, sender: &Sender, corners: &'a [DVec3]) -> Self {
         let mut shaft = Shaft::between(viewers.bounds, sender.bounds);
         if let Some(flat) = &viewers.flat {
             shaft.bound(viewers.hull[0], -flat.normal);

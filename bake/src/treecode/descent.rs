@@ -20,7 +20,7 @@ pub struct Descent<'a> {
 
 /// Rows of consecutive receivers.
 #[derive(Default)]
-pub struct Found {
+pub struct BlockRows {
     /// The rows, one group a flat cluster.
     pub groups: Vec<RowGroup>,
     /// Their sums.
@@ -38,19 +38,19 @@ const SMALLER: f64 = 0.7;
 
 impl<'a> Descent<'a> {
     /// All rows.
-    pub fn rows(&self) -> Found {
+    pub fn rows(&self) -> BlockRows {
         let Some(group) = receiver_groups(self.request.world, self.request.receivers) else {
-            return Found::default();
+            return BlockRows::default();
         };
         self.descend(&group, &Frontier::all(self.request), f64::INFINITY)
     }
 
     /// The rows of a group. `size` is that of the receivers that the frontier was made for.
-    fn descend(&self, group: &Group, frontier: &Frontier<'a>, size: f64) -> Found {
+    fn descend(&self, group: &Group, frontier: &Frontier<'a>, size: f64) -> BlockRows {
         let start = Instant::now();
         let Some(halves) = &group.halves else { return self.search(group, frontier, start) };
         if self.monitor.stopped() {
-            return Found::default();
+            return BlockRows::default();
         }
         let Request { world, receivers, .. } = *self.request;
         let viewers = Viewers::new(world, &receivers.elements(world)[group.elements.clone()]);
@@ -64,7 +64,7 @@ impl<'a> Descent<'a> {
         let [left, right] = &**halves;
         let (left, right) =
             rayon::join(|| self.descend(left, frontier, size), || self.descend(right, frontier, size));
-        Found {
+        BlockRows {
             groups: [left.groups, right.groups].into_iter().flatten().collect(),
             sums: [left.sums, right.sums].concat(),
             computed: [left.computed, right.computed].concat(),
@@ -73,13 +73,13 @@ impl<'a> Descent<'a> {
         }
     }
 
-    fn search(&self, group: &Group, frontier: &Frontier<'a>, start: Instant) -> Found {
+    fn search(&self, group: &Group, frontier: &Frontier<'a>, start: Instant) -> BlockRows {
         if self.monitor.stopped() {
-            return Found::default();
+            return BlockRows::default();
         }
         let rows = Search::rows(self.request, group.elements.clone(), frontier);
         self.monitor.advance(group.elements.len());
-        Found {
+        BlockRows {
             groups: vec![rows.group],
             sums: rows.sums,
             computed: vec![(rows.computed / group.elements.len()) as u32; group.elements.len()],

@@ -17,7 +17,7 @@ use crate::geometry::outline::Outline;
 use crate::geometry::polygon::{Polygon, Side, clip};
 use crate::geometry::tolerance::IN_PLANE;
 use crate::world::occluders::Shape;
-use crate::world::{Node, World};
+use crate::world::{Sender, World};
 use equilux_formats::FaceId;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -88,7 +88,7 @@ impl<'a> Evaluator<'a> {
     pub fn evaluate(
         &mut self,
         receivers: &Receivers,
-        sender: &Node,
+        sender: &Sender,
         occluders: &[Entry],
         values: &mut Vec<f64>,
     ) -> bool {
@@ -122,7 +122,7 @@ impl<'a> Evaluator<'a> {
                 }
                 let receiver = number * LANES + lane;
                 let occluders = meshes.occluders(receivers, receiver, || chunk.corners_of(lane), side);
-                let seen = Seen { chunk, planes: &planes, occluders, lane, normal };
+                let seen = ReceiverView { chunk, planes: &planes, occluders, lane, normal };
                 clipper.add(seen, values, edges);
             }
         }
@@ -131,7 +131,7 @@ impl<'a> Evaluator<'a> {
     }
 
     /// What of the list stands before the sender's plane, whichever receiver looks.
-    fn find_before(&mut self, receivers: &Receivers, sender: &Node, occluders: &[Entry]) {
+    fn find_before(&mut self, receivers: &Receivers, sender: &Sender, occluders: &[Entry]) {
         self.before.clear();
         self.pieces.clear();
         self.meshes.clear();
@@ -244,7 +244,7 @@ impl Chunk {
 }
 
 /// What one receiver sees.
-struct Seen<'a> {
+struct ReceiverView<'a> {
     chunk: &'a mut Chunk,
     planes: &'a [&'a [Planes]],
     occluders: MeshOccluders<'a>,
@@ -262,8 +262,8 @@ struct Clipper {
 
 impl Clipper {
     /// Correct the last of `values`, which is the unoccluded form factor, not zero.
-    fn add(&mut self, seen: Seen, values: &mut [f64], edges: &mut Edges) {
-        let Seen { chunk, planes, occluders, lane, normal } = seen;
+    fn add(&mut self, seen: ReceiverView, values: &mut [f64], edges: &mut Edges) {
+        let ReceiverView { chunk, planes, occluders, lane, normal } = seen;
         let place = values.len() - 1;
         if chunk.cuts[lane].is_empty() && occluders.is_empty() && !chunk.plain[lane] {
             return;

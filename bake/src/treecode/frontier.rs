@@ -4,7 +4,7 @@
 use super::candidates::{Candidates, Entry, Verdict};
 use super::request::Request;
 use super::viewers::Viewers;
-use crate::world::Node;
+use crate::world::Sender;
 use std::ops::Range;
 
 /// Senders that a group of receivers may see, and what may stand in between.
@@ -74,7 +74,7 @@ fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
         && !revision.change.touches(world, viewers, sender)
 }
 
-fn stays_closed(sender: &Node, viewers: &Viewers) -> bool {
+fn stays_closed(sender: &Sender, viewers: &Viewers) -> bool {
     let size = sender.bounds.diagonal();
     size <= CLOSED * viewers.diameter.max(viewers.distance_to(sender))
 }

@@ -8,7 +8,7 @@
 use super::viewers::Viewers;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::shaft::Shaft;
-use crate::world::{Node, World};
+use crate::world::{Sender, World};
 use equilux_formats::{Geometry, RowGroup, Rows};
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
@@ -17,14 +17,14 @@ use std::ops::Range;
 /// What appeared in a scene or disappeared from it.
 #[derive(Debug)]
 pub struct Change {
-    things: Vec<Thing>,
+    occluders: Vec<ChangedOccluder>,
     /// For each instance whether all of its senders are looked for again: it is new, or somewhere else.
     pub anew: Vec<bool>,
 }
 
 /// Something convex that hides.
 #[derive(Debug)]
-struct Thing {
+struct ChangedOccluder {
     bounds: Aabb,
     corners: Vec<DVec3>,
 }
@@ -43,23 +43,23 @@ pub struct Revision<'a> {
 impl Change {
     /// Nothing, in a scene of so many instances.
     pub fn none(instances: usize) -> Self {
-        Self { things: vec![], anew: vec![false; instances] }
+        Self { occluders: vec![], anew: vec![false; instances] }
     }
 
     /// Something appeared, or was there before.
     pub fn add(&mut self, geometry: &Geometry, placement: DAffine3) {
         let alone = World::new([(geometry, placement)]);
-        let things = alone.occluders.all.into_iter();
-        self.things.extend(things.map(|o| Thing { bounds: o.bounds, corners: o.corners }));
+        let occluders = alone.occluders.all.into_iter();
+        self.occluders.extend(occluders.map(|o| ChangedOccluder { bounds: o.bounds, corners: o.corners }));
     }
 
     /// Whether there is none.
     pub fn is_none(&self) -> bool {
-        self.things.is_empty() && !self.anew.contains(&true)
+        self.occluders.is_empty() && !self.anew.contains(&true)
     }
 
     /// Whether light from the sender to the viewers may have changed.
-    pub fn touches(&self, world: &World, viewers: &Viewers, sender: &Node) -> bool {
+    pub fn touches(&self, world: &World, viewers: &Viewers, sender: &Sender) -> bool {
         let mut shaft = Shaft::between(viewers.bounds, sender.bounds);
         if let Some(flat) = &viewers.flat {
             shaft.bound(viewers.hull[0], -flat.normal);
@@ -67,10 +67,11 @@ impl Change {
         if let Some(side) = sender.side {
             shaft.bound(world.faces[side.face.index()].corners[0], -side.normal);
         }
-        let touches = |thing: &Thing| {
-            !shaft.misses_box(&thing.bounds) && (thing.corners.is_empty() || !shaft.misses(&thing.corners))
+        let touches = |occluder: &ChangedOccluder| {
+            !shaft.misses_box(&occluder.bounds)
+                && (occluder.corners.is_empty() || !shaft.misses(&occluder.corners))
         };
-        self.things.iter().any(touches)
+        self.occluders.iter().any(touches)
     }
 }
 

@@ -7,7 +7,7 @@ use super::receivers::Receivers;
 use super::request::Request;
 use super::resolution::MISSED;
 use super::revision::Revised;
-use crate::world::Node;
+use crate::world::Sender;
 use equilux_formats::RowGroup;
 use std::collections::BinaryHeap;
 use std::ops::Range;
@@ -51,7 +51,7 @@ pub struct Search<'a> {
 }
 
 /// Rows of one cluster of receivers.
-pub struct Found {
+pub struct GroupRows {
     /// The rows.
     pub group: RowGroup,
     /// Their sums.
@@ -77,7 +77,7 @@ struct Open {
 }
 
 /// What came of a sender.
-enum Taken {
+enum Attempt {
     /// It has its entry, or needs none.
     Done,
     /// Too much of it is seen for one entry.
@@ -86,7 +86,7 @@ enum Taken {
 
 impl<'a> Search<'a> {
     /// The rows of some elements on one side of one face, and their sums.
-    pub fn rows(request: &'a Request<'a>, elements: Range<usize>, frontier: &Frontier<'a>) -> Found {
+    pub fn rows(request: &'a Request<'a>, elements: Range<usize>, frontier: &Frontier<'a>) -> GroupRows {
         let missing: Vec<f64> = match request.already {
             Some(seen) => seen[elements.clone()].iter().map(|seen| 1.0 - seen).collect(),
             None => vec![1.0; elements.len()],
@@ -100,7 +100,7 @@ impl<'a> Search<'a> {
         {
             let width = group.columns.len();
             let sum = |i: usize| group.values[i * width..(i + 1) * width].iter().sum();
-            return Found {
+            return GroupRows {
                 sums: (0..group.receivers).map(sum).collect(),
                 group,
                 computed: 0,
@@ -129,7 +129,7 @@ impl<'a> Search<'a> {
         search.run(frontier)
     }
 
-    fn run(mut self, frontier: &Frontier<'a>) -> Found {
+    fn run(mut self, frontier: &Frontier<'a>) -> GroupRows {
         for (node, list) in frontier.senders() {
             let candidates = self.candidates.adopt(list);
             let lost = self.has_lost(node);
@@ -196,9 +196,9 @@ impl<'a> Search<'a> {
         } else if may_end && !clear && error <= tried * RETRY_SHRINK {
             self.take(node, kept.clone(), PARTIAL_VISIBILITY_SHARE * opening / self.slant(sender))
         } else {
-            Taken::TooMuch
+            Attempt::TooMuch
         };
-        if let (Taken::TooMuch, Some(children)) = (found, sender.children) {
+        if let (Attempt::TooMuch, Some(children)) = (found, sender.children) {
             let tried = if may_end { error.min(tried) } else { tried };
             for child in children {
                 let candidates = kept.clone();
@@ -210,7 +210,7 @@ impl<'a> Search<'a> {
     /// What an entry for a cluster may err by: its form factor, at most, times its size over its distance, times how much
     /// the radiosity varies within the cluster, which is unknown here. The variation is larger where something stands
     /// between, because what is hidden often has other light than what is not. Infinite if it can have no entry.
-    fn error(&self, sender: &Node) -> f64 {
+    fn error(&self, sender: &Sender) -> f64 {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {
             return f64::INFINITY;
         }
@@ -223,31 +223,31 @@ impl<'a> Search<'a> {
     }
 
     /// Size over distance.
-    fn slant(&self, sender: &Node) -> f64 {
+    fn slant(&self, sender: &Sender) -> f64 {
         let radius = sender.bounds.diagonal() / 2.0;
         radius / (self.receivers.viewers.distance_to(sender) + radius)
     }
 
     /// One entry for the sender, its form factor for every receiver, unless one of them is above `most`.
-    fn take(&mut self, node: u32, candidates: Range<usize>, most: f64) -> Taken {
+    fn take(&mut self, node: u32, candidates: Range<usize>, most: f64) -> Attempt {
         let sender = &self.request.world.nodes[node as usize];
         let first = self.values.len();
         let occluders = self.candidates.slice(candidates);
         if !self.evaluator.evaluate(&self.receivers, sender, occluders, &mut self.values) {
             self.values.truncate(first);
             self.cover(node);
-            return Taken::Done;
+            return Attempt::Done;
         }
         if self.values[first..].iter().any(|&value| value > most) {
             self.values.truncate(first);
-            return Taken::TooMuch;
+            return Attempt::TooMuch;
         }
         for (missing, value) in self.missing.iter_mut().zip(&self.values[first..]) {
             *missing -= value;
         }
         self.columns.push(node - self.request.columns.start as u32);
         self.cover(node);
-        Taken::Done
+        Attempt::Done
     }
 
     /// What lies inside a sender that is done with has no entries of its own.
@@ -258,7 +258,7 @@ impl<'a> Search<'a> {
     }
 
     /// Columns in rising order, values by receiver.
-    fn finish(mut self) -> Found {
+    fn finish(mut self) -> GroupRows {
         let receivers = self.receivers.count();
         let computed = self.values.len();
         let mut is_changed = true;
@@ -277,7 +277,7 @@ impl<'a> Search<'a> {
             (0..receivers).flat_map(row).map(|(k, i)| self.values[k * receivers + i]).collect();
         let width = order.len();
         let sums = (0..receivers).map(|i| values[i * width..(i + 1) * width].iter().sum()).collect();
-        Found { group: RowGroup { columns, values, receivers }, sums, computed, is_changed }
+        GroupRows { group: RowGroup { columns, values, receivers }, sums, computed, is_changed }
     }
 }
 

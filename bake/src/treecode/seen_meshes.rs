@@ -5,7 +5,7 @@ use super::pieces::Pieces;
 use super::receivers::Receivers;
 use crate::geometry::polygon::Polygon;
 use crate::meshes::{Obstruction, SeenMesh, SeenPolygon};
-use crate::world::{Side, World};
+use crate::world::{FaceSide, World};
 use equilux_formats::FaceId;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -22,7 +22,7 @@ pub struct SeenMeshes<'a> {
 /// What of them may hide something of one sender from one receiver.
 pub struct MeshOccluders<'s> {
     world: &'s World,
-    side: Side,
+    side: FaceSide,
     meshes: SmallVec<[&'s SeenMesh<'s>; 8]>,
 }
 
@@ -49,7 +49,7 @@ impl<'a> SeenMeshes<'a> {
         receivers: &Receivers,
         receiver: usize,
         corners: impl FnOnce() -> Polygon,
-        side: Side,
+        side: FaceSide,
     ) -> MeshOccluders<'_> {
         let mut occluders = MeshOccluders { world: self.world, side, meshes: SmallVec::new() };
         if !self.before.is_empty() {

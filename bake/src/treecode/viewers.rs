@@ -3,7 +3,7 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Polygon, convex_hull};
 use crate::geometry::tolerance::IN_PLANE;
-use crate::world::{Node, World};
+use crate::world::{Sender, World};
 use equilux_formats::{Element, FaceId};
 use glam::DVec3;
 
@@ -52,13 +52,13 @@ impl Viewers {
     }
 
     /// Distance from the box around the viewers to the box around a sender.
-    pub fn distance_to(&self, sender: &Node) -> f64 {
+    pub fn distance_to(&self, sender: &Sender) -> f64 {
         let (own, other) = (&self.bounds, &sender.bounds);
         (other.low - own.high).max(own.low - other.high).max(DVec3::ZERO).length()
     }
 
     /// Whether a sender lies wholly below the horizon, in the viewers' plane, or turns its back on all of them.
-    pub fn cannot_see(&self, sender: &Node, world: &World) -> bool {
+    pub fn cannot_see(&self, sender: &Sender, world: &World) -> bool {
         let origin = self.hull[0];
         let (centre, half) = (sender.bounds.centre(), sender.bounds.size() * 0.5);
         let reach = (centre - origin).length() + half.length();

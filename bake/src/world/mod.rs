@@ -1,4 +1,4 @@
-//! Elements, clusters and faces of one or many instances in one frame: what form-factor rows are computed in.
+//! Elements, clusters and faces of one or more instances in one coordinate system: the input of form-factor computations.
 
 pub mod occluders;
 
@@ -12,19 +12,19 @@ use glam::{DAffine3, DVec3};
 use occluders::Occluders;
 use std::ops::Range;
 
-/// Placed geometry with what blocks light in it.
+/// Placed geometry and its occluders.
 #[derive(Debug)]
 pub struct World {
     /// All elements, instance after instance; `face` counts through [`World::faces`].
     pub elements: Vec<Element>,
-    /// All faces: everything that blocks light.
+    /// All faces, which block light.
     pub faces: Vec<Face>,
     planes: Planes,
     /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
-    pub nodes: Vec<Node>,
-    /// The faces and solids by place.
+    pub nodes: Vec<Sender>,
+    /// The occluders, in a spatial index.
     pub occluders: Occluders,
-    instances: Vec<Placed>,
+    instances: Vec<InstanceRanges>,
     /// The cluster around every node; its own number for a root.
     parents: Vec<u32>,
 }
@@ -37,9 +37,9 @@ struct Planes {
     instance: Vec<u32>,
 }
 
-/// Where an instance's things begin and end.
+/// The ranges of an instance's elements and nodes.
 #[derive(Debug, Clone, PartialEq)]
-struct Placed {
+struct InstanceRanges {
     elements: Range<usize>,
     nodes: Range<usize>,
     root: Option<usize>,
@@ -47,38 +47,38 @@ struct Placed {
 
 /// An element or cluster as a sender.
 #[derive(Debug, Clone)]
-pub struct Node {
+pub struct Sender {
     /// The box around it.
     pub bounds: Aabb,
     /// Area, m².
     pub area: f64,
-    /// What lies inside a cluster.
+    /// The children of a cluster; none for an element.
     pub children: Option<[u32; 2]>,
-    /// The one side of the one face it lies in, if it does.
-    pub side: Option<Side>,
+    /// The side of a face that all its elements lie on; none if they lie on several.
+    pub side: Option<FaceSide>,
     /// Its outline, if it is a planar convex polygon; elements always are. Empty if not.
     pub polygon: Polygon,
 }
 
 /// One side of a face.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Side {
+pub struct FaceSide {
     /// The face.
     pub face: FaceId,
     /// Unit normal of this side.
     pub normal: DVec3,
-    /// The material of all that is meant: surfaces of different light are never one sender.
+    /// The material of its elements: surfaces of different materials are never one sender.
     pub material: MaterialId,
 }
 
-impl Side {
+impl FaceSide {
     fn is_as(&self, other: Self) -> bool {
         self.face == other.face && self.material == other.material && self.normal.dot(other.normal) > 0.0
     }
 }
 
 impl World {
-    /// The world of geometries, each moved by its placement (a similarity).
+    /// Builds the world of these geometries, each with its placement (a similarity).
     pub fn new<'a>(placed: impl IntoIterator<Item = (&'a Geometry, DAffine3)>) -> Self {
         let (mut elements, mut faces, mut nodes, mut instances) = (vec![], vec![], vec![], vec![]);
         let (mut in_part, mut instance) = (vec![], vec![]);
@@ -88,8 +88,8 @@ impl World {
             faces.extend(geometry.faces.iter().map(|face| place_face(face, placement)));
             in_part.extend(planes::group(&geometry.faces));
             instance.resize(faces.len(), instances.len() as u32);
-            add_nodes(&geometry.clusters, &elements[first_element..], &mut nodes);
-            instances.push(Placed {
+            add_senders(&geometry.clusters, &elements[first_element..], &mut nodes);
+            instances.push(InstanceRanges {
                 elements: first_element..elements.len(),
                 nodes: first_node..nodes.len(),
                 root: geometry.clusters.root().map(|root| first_node + root),
@@ -101,12 +101,12 @@ impl World {
         Self { elements, faces, planes, nodes, occluders, instances, parents }
     }
 
-    /// Add senders that hide nothing: elements that lie in faces of the world. Returns their instance.
+    /// Adds senders that do not occlude: elements that lie in faces of the world. Returns their instance.
     pub fn add_senders(&mut self, elements: &[Element], clusters: &ClusterTree) -> usize {
         let (first_element, first_node) = (self.elements.len(), self.nodes.len());
         self.elements.extend_from_slice(elements);
-        add_nodes(clusters, elements, &mut self.nodes);
-        self.instances.push(Placed {
+        add_senders(clusters, elements, &mut self.nodes);
+        self.instances.push(InstanceRanges {
             elements: first_element..self.elements.len(),
             nodes: first_node..self.nodes.len(),
             root: clusters.root().map(|root| first_node + root),
@@ -115,7 +115,7 @@ impl World {
         self.instances.len() - 1
     }
 
-    /// Add geometry that stands behind everything and hides nothing, such as a sky. Returns its instance.
+    /// Adds geometry behind everything else that does not occlude, such as a sky. Returns its instance.
     pub fn add_far(&mut self, geometry: &Geometry) -> usize {
         let first = self.faces.len() as u32;
         self.faces.extend_from_slice(&geometry.faces);
@@ -131,8 +131,8 @@ impl World {
         self.add_senders(&elements, &geometry.clusters)
     }
 
-    /// Whether two faces lie in one plane, so that neither lights or hides anything of the other. Within an instance
-    /// the part's own coordinates decide, so that every scene decides as the part alone does.
+    /// Whether two faces lie in one plane, so that neither lights nor hides the other. Within an instance this is
+    /// decided in the part's own coordinates, so that it is the same in every scene.
     pub fn coplanar(&self, a: FaceId, b: FaceId) -> bool {
         let Planes { in_scene, in_part, instance } = &self.planes;
         let (a, b) = (a.index(), b.index());
@@ -189,7 +189,7 @@ impl World {
     }
 }
 
-fn parents(nodes: &[Node]) -> Vec<u32> {
+fn parents(nodes: &[Sender]) -> Vec<u32> {
     let mut parents: Vec<u32> = (0..nodes.len() as u32).collect();
     for (number, node) in nodes.iter().enumerate() {
         node.children.iter().flatten().for_each(|&child| parents[child as usize] = number as u32);
@@ -197,7 +197,7 @@ fn parents(nodes: &[Node]) -> Vec<u32> {
     parents
 }
 
-/// A mirrored placement turns the order of the corners around, so that they stay counter-clockwise from the front.
+/// A mirrored placement reverses the order of the corners, so that they stay counter-clockwise from the front.
 fn place_element(element: &Element, placement: DAffine3, first_face: u32) -> Element {
     if placement == DAffine3::IDENTITY {
         return Element { face: FaceId(element.face.0 + first_face), ..*element };
@@ -220,12 +220,12 @@ fn place_face(face: &Face, placement: DAffine3) -> Face {
     Face::new(corners)
 }
 
-/// Append the nodes of one instance, whose placed elements are given.
-fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
+/// Appends the senders of one instance with these placed elements.
+fn add_senders(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Sender>) {
     let base = nodes.len();
-    nodes.extend(elements.iter().map(element_node));
-    // Clusters come before what they hold, so the last is complete first.
-    let mut clusters: Vec<Node> = Vec::with_capacity(tree.nodes() - elements.len());
+    nodes.extend(elements.iter().map(element_sender));
+    // Clusters precede their children, so this loop runs backwards.
+    let mut clusters: Vec<Sender> = Vec::with_capacity(tree.nodes() - elements.len());
     let count = tree.nodes();
     for node in (elements.len()..count).rev() {
         let pair = tree.children_of(node).expect("a cluster has children");
@@ -234,30 +234,30 @@ fn add_nodes(tree: &ClusterTree, elements: &[Element], nodes: &mut Vec<Node>) {
             if local < elements.len() { &nodes[base + local] } else { &clusters[count - 1 - local] }
         };
         let inner = [child(pair[0]), child(pair[1])];
-        clusters.push(cluster_node(inner, pair.map(|local| base as u32 + local)));
+        clusters.push(cluster_sender(inner, pair.map(|local| base as u32 + local)));
     }
     clusters.reverse();
     nodes.extend(clusters);
 }
 
-fn element_node(element: &Element) -> Node {
+fn element_sender(element: &Element) -> Sender {
     let corners = element.corners.as_slice();
-    Node {
+    Sender {
         bounds: Aabb::around(corners),
         area: element.area,
         children: None,
-        side: Some(Side { face: element.face, normal: element.normal, material: element.material }),
+        side: Some(FaceSide { face: element.face, normal: element.normal, material: element.material }),
         polygon: corners.iter().copied().collect(),
     }
 }
 
-fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
+fn cluster_sender([left, right]: [&Sender; 2], children: [u32; 2]) -> Sender {
     let side = match (left.side, right.side) {
         (Some(l), Some(r)) if l.is_as(r) => Some(l),
         _ => None,
     };
     let polygon = side.map_or_else(Polygon::new, |side| union(left, right, side.normal));
-    Node {
+    Sender {
         bounds: left.bounds.union(right.bounds),
         area: left.area + right.area,
         children: Some(children),
@@ -267,7 +267,7 @@ fn cluster_node([left, right]: [&Node; 2], children: [u32; 2]) -> Node {
 }
 
 /// The union of two polygons in one plane if it is convex, else nothing: their convex hull, if it has their area.
-fn union(left: &Node, right: &Node, normal: DVec3) -> Polygon {
+fn union(left: &Sender, right: &Sender, normal: DVec3) -> Polygon {
     if left.polygon.is_empty() || right.polygon.is_empty() {
         return Polygon::new();
     }

@@ -1,8 +1,7 @@
-//! What blocks light: closed convex solids and curved meshes as a whole, all other faces one by one, in a hierarchy of
-//! boxes.
+//! Occluders: closed convex solids and curved meshes as a whole, all other faces one by one, in a hierarchy of boxes.
 //!
 //! Seen from a point outside, a convex solid hides exactly the pyramid over its silhouette: the loop of edges between
-//! faces that look at the point and faces that do not. What a mesh hides is told by [`crate::meshes`].
+//! faces that face the point and faces that do not. [`crate::meshes`] computes what a mesh hides.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::box_tree::{BoxTree, Inside};
@@ -18,15 +17,15 @@ use std::collections::HashMap;
 /// All occluders of a world.
 #[derive(Debug)]
 pub struct Occluders {
-    /// The occluders; in the end the faces of meshes.
+    /// The occluders, followed by the faces of meshes.
     pub all: Vec<Occluder>,
-    /// Their boxes, but for those of the faces of meshes.
+    /// Their boxes, without those of the faces of meshes.
     pub tree: BoxTree,
     /// The occluder that each face belongs to.
     pub of_face: Vec<u32>,
 }
 
-/// A face, or faces that hide as a whole.
+/// A face, or faces that occlude as a whole.
 #[derive(Debug)]
 pub struct Occluder {
     /// The box around it.
@@ -35,44 +34,45 @@ pub struct Occluder {
     pub diameter: f64,
     /// Its corners; of a mesh, those of its box.
     pub corners: Vec<DVec3>,
-    /// Its faces: one, or all that hide together.
+    /// Its faces: one, or all that occlude as a whole.
     pub faces: Vec<u32>,
-    /// What it is.
+    /// Its kind, with the data to compute what it hides.
     pub shape: Shape,
 }
 
-/// How what is hidden is found.
+/// The kinds of occluders.
 #[derive(Debug)]
 pub enum Shape {
     /// One face, by its edges.
     Face(Outline),
     /// A closed convex solid, by its edges; sides are in the order of the faces.
     Solid(Outline),
-    /// Faces of any shape, by their silhouette.
+    /// A mesh of any shape, by its silhouette.
     Mesh(Box<Together>),
 }
 
-/// Faces that hide together, or, where only few of them matter, one by one.
+/// A mesh that occludes as a whole or, where only few of its faces matter, face by face.
 #[derive(Debug)]
 pub struct Together {
-    /// All of them.
+    /// The mesh.
     pub mesh: Mesh,
-    /// Boxes around each.
+    /// The boxes of its faces.
     pub tree: BoxTree,
-    /// The occluder that the first of them is on its own; the others follow.
+    /// The occluder of its first face; those of the other faces follow.
     pub first: u32,
 }
 
-/// Connected faces fewer than these hide one by one: a silhouette would hardly be shorter than their edges.
+/// Groups of fewer connected faces occlude face by face: a silhouette would hardly be shorter than their edges.
 const MESH: usize = 24;
 
-/// Faces hide together as a mesh where most edges bend by less than this angle's cosine, 45°. What is bent more, such as
-/// a building's shell, has few, large faces, of which one alone can hide whole clusters from each other: found sooner.
+/// Faces occlude as a mesh if most edges bend by less than the angle of this cosine, 45°. Surfaces that bend more, such
+/// as a building's shell, have few, large faces. One of these alone can hide whole clusters from each other, which is
+/// found sooner face by face.
 const BEND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Occluders {
-    /// The occluders that `faces` make. `lit_behind` tells of each face whether it has elements on its back: a solid that is
-    /// seen from inside, too, hides face by face.
+    /// The occluders of a world with these faces. `lit_behind` marks faces with elements on their back: a solid that is
+    /// also seen from inside occludes face by face.
     pub fn new(faces: &[Face], lit_behind: &[bool]) -> Self {
         let mut all = Vec::new();
         let mut of_face = vec![u32::MAX; faces.len()];
@@ -103,7 +103,7 @@ impl Occluders {
         Self { tree, all, of_face }
     }
 
-    /// Whether `found` is true of any occluder whose box `misses` does not rule out; both are given boxes or what is in them.
+    /// Whether `found` returns true for any occluder whose box, and the boxes around it, `misses` does not exclude.
     pub fn any(&self, misses: impl Fn(&Aabb) -> bool, mut found: impl FnMut(&Occluder) -> bool) -> bool {
         let mut open: Vec<usize> = self.tree.root().into_iter().collect();
         while let Some(index) = open.pop() {
@@ -164,7 +164,7 @@ fn edges(face: &Face) -> impl Iterator<Item = (DVec3, DVec3)> + '_ {
     (0..n).map(move |i| (face.corners[i], face.corners[(i + 1) % n]))
 }
 
-/// Whether these connected faces are a tessellated curved surface: see [`BEND`]. Edges that do not bend tell nothing.
+/// Whether these connected faces are a tessellated curved surface: see [`BEND`]. Flat edges do not count.
 fn is_curved(group: &[u32], faces: &[Face]) -> bool {
     if group.len() < MESH {
         return false;

@@ -1,7 +1,7 @@
 //! The light file: optics, local equilibrium, and the factors of the direct solver.
 
 use super::{Stored, array_of, check, finite_array, finite_lights};
-use crate::baked::{Answers, BakedLight, Factors, LocalEquilibrium, Lu};
+use crate::baked::{BakedLight, BoundaryResponses, Factors, LocalEquilibrium, Lu};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
@@ -79,7 +79,7 @@ fn answer_name(number: usize) -> String {
     format!("answer {number}")
 }
 
-fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<Answers> {
+fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<BoundaryResponses> {
     let of = |number| one_an_element(reader, &answer_name(number), elements);
     let radiosity: Vec<Vec<Rgb>> = (0..meta.answers).map(of).collect::<Result<_>>()?;
     let matrix = finite_lights(reader, "answers' matrix")?;
@@ -90,7 +90,7 @@ fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<Ans
     check(reader, meta.returned.iter().all(|share| share.is_finite()), || {
         "a share that is no number".into()
     })?;
-    Ok(Answers { radiosity, matrix, returned: meta.returned })
+    Ok(BoundaryResponses { radiosity, matrix, returned: meta.returned })
 }
 
 fn one_an_element(reader: &mut Reader, name: &str, elements: usize) -> Result<Vec<Rgb>> {

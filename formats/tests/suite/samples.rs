@@ -1,9 +1,9 @@
 //! Values of every kind of file, and what a test needs to write and read them.
 
 use equilux_formats::{
-    Answers, BakedGeometry, BakedLight, ClusterTree, Content, Corners, Element, Error, Face, FaceId, Factors,
-    Geometry, LocalEquilibrium, LocalSolver, Lu, Manifest, MaterialId, Optics, Precision, Reader, Rgb,
-    RowGroup, Rows, Stored,
+    BakedGeometry, BakedLight, BoundaryResponses, ClusterTree, Content, Corners, Element, Error, Face,
+    FaceId, Factors, Geometry, LocalEquilibrium, LocalSolver, Lu, Manifest, MaterialId, Optics, Precision,
+    Reader, Rgb, RowGroup, Rows, Stored,
 };
 use glam::DVec3;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ pub fn light() -> BakedLight {
         reflectance: vec![Rgb([0.5, 0.25, 0.5]); 2],
         emission: vec![Rgb::BLACK, Rgb([10.0, 1e12, 1e-12])],
     };
-    let answers = Answers {
+    let answers = BoundaryResponses {
         radiosity: vec![vec![Rgb([0.5, 0.25, 0.0]); 2]],
         matrix: vec![Rgb([0.125, 1e-9, 0.0])],
         returned: Rgb([0.75, 0.5, 0.0]),

@@ -2,8 +2,8 @@
 //! and too little room.
 
 use equilux_formats::{
-    Answers, BakedLight, Content, Key, Kind, LocalEquilibrium, LocalSolver, Lookup, Manifest, Optics, Rgb,
-    Rows, Store, Swept, Tally, remove_left_over_beside, write_whole,
+    BakedLight, BoundaryResponses, Content, Evicted, Key, Kind, LocalEquilibrium, LocalSolver, Lookup,
+    Manifest, Optics, Rgb, Rows, Store, Tally, remove_left_over_beside, write_whole,
 };
 use std::collections::HashSet;
 use std::fs::{self, File};
@@ -30,7 +30,7 @@ fn light() -> BakedLight {
         solver: LocalSolver::Iterative,
         radiosity: vec![Rgb([1.0 / 3.0; 3])],
         factors: None,
-        answers: Answers::default(),
+        answers: BoundaryResponses::default(),
     };
     BakedLight { optics, local }
 }
@@ -71,7 +71,7 @@ fn what_a_killed_process_left_goes_and_what_is_being_written_stays() {
     assert_eq!(fs::read(&path).unwrap(), b"whole");
 }
 
-/// Of files that others sweep away in their first moment: all the same, each is there in the end.
+/// Of files that others remove in their first moment: all the same, each is there in the end.
 #[test]
 fn writers_and_sweepers_do_not_disturb_each_other() {
     let folder = folder();
@@ -178,9 +178,9 @@ fn keeping_only_some_keys_drops_all_else_that_a_store_made() {
     for foreign in ["notes.txt", "part-of-a-book.eqx"] {
         fs::write(folder.path().join(foreign), "mine").unwrap();
     }
-    let swept = store.keep_only(&HashSet::from([manifest(1).key()])).unwrap();
+    let evicted = store.keep_only(&HashSet::from([manifest(1).key()])).unwrap();
     assert_eq!(
-        (swept.dropped.files, swept.kept.files),
+        (evicted.dropped.files, evicted.kept.files),
         (4, 3),
         "two couplings and what was noted of them go"
     );
@@ -189,7 +189,7 @@ fn keeping_only_some_keys_drops_all_else_that_a_store_made() {
     assert_eq!(store.last_manifest("thing 1"), Some(manifest(1)));
     assert!(matches!(store.load::<Rows>(&manifest(0).key()), Lookup::Missing));
     assert_eq!(store.last_manifest("thing 0"), None);
-    let bytes: u64 = swept.kept.bytes;
+    let bytes: u64 = evicted.kept.bytes;
     let there: u64 = fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().metadata().unwrap().len()).sum();
     assert_eq!(bytes, there - 8, "all but the two foreign files of four bytes, no longer a lock");
 }
@@ -214,12 +214,12 @@ fn a_limit_drops_what_was_not_used_for_longest_and_never_what_is_in_use() {
     };
     let of = |files: usize| Tally { files, bytes: files as u64 * size };
 
-    assert_eq!(store.limit(4 * size).unwrap(), Swept { dropped: of(0), kept: of(4) });
-    assert_eq!(store.limit(3 * size).unwrap(), Swept { dropped: of(1), kept: of(3) });
+    assert_eq!(store.limit(4 * size).unwrap(), Evicted { dropped: of(0), kept: of(4) });
+    assert_eq!(store.limit(3 * size).unwrap(), Evicted { dropped: of(1), kept: of(3) });
     assert_eq!(there(&store), [0, 1, 2], "3 was used longest ago");
-    assert_eq!(store.limit(2 * size + 1).unwrap(), Swept { dropped: of(1), kept: of(2) });
+    assert_eq!(store.limit(2 * size + 1).unwrap(), Evicted { dropped: of(1), kept: of(2) });
     assert_eq!(there(&store), [0, 2], "2 was just used");
-    assert_eq!(store.limit(0).unwrap(), Swept { dropped: of(1), kept: of(1) });
+    assert_eq!(store.limit(0).unwrap(), Evicted { dropped: of(1), kept: of(1) });
     assert_eq!(there(&store), [2], "2 is in use");
     assert_eq!(Store::open(folder.path()).unwrap().limit(0).unwrap().kept, of(0), "of a run that used none");
 }

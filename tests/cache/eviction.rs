@@ -1,4 +1,4 @@
-//! Sweeping drops what is not needed and nothing else.
+//! Cache eviction removes files that are not needed, and no others.
 
 use super::{done, told};
 use equilux_tests::model::{Model, Node};
@@ -51,12 +51,12 @@ fn exactly_what_a_run_of_the_named_scenes_would_make_stays() {
     std::fs::write(workshop.path("cache/readme.txt"), "mine").expect("a written file");
 
     let before = cached(&workshop).len();
-    let swept = told(&workshop, "bake", &[&["scene.glb", "--gc"], &COARSE[..]].concat());
+    let evicted = told(&workshop, "bake", &[&["scene.glb", "--gc"], &COARSE[..]].concat());
     let needed = needed(&moved(), &COARSE);
     assert_eq!(cached(&workshop), needed, "kept and needed");
-    assert_eq!(swept["kept"]["files"], needed.len(), "{swept}");
-    assert_eq!(swept["dropped"]["files"], before - needed.len(), "{swept}");
-    assert_eq!(assembled(&workshop, "scene.glb", &COARSE), 0, "form factors computed after sweeping");
+    assert_eq!(evicted["kept"]["files"], needed.len(), "{evicted}");
+    assert_eq!(evicted["dropped"]["files"], before - needed.len(), "{evicted}");
+    assert_eq!(assembled(&workshop, "scene.glb", &COARSE), 0, "form factors computed after eviction");
     assert_eq!(cached(&workshop), needed, "nothing was made anew");
     assert!(workshop.path("cache/readme.txt").exists(), "a file that is not ours");
 }

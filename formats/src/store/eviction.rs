@@ -15,7 +15,7 @@ use std::time::SystemTime;
 
 /// What went and what stayed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Swept {
+pub struct Evicted {
     /// Removed.
     pub dropped: Tally,
     /// Still there.
@@ -44,9 +44,9 @@ struct Cached {
 impl Store {
     /// Drops every file that is not under one of these keys. Of what was last made from what, only that is kept which
     /// led to one of the keys.
-    pub fn keep_only(&self, keys: &HashSet<Key>) -> Result<Swept> {
+    pub fn keep_only(&self, keys: &HashSet<Key>) -> Result<Evicted> {
         let keys: HashSet<Digest> = keys.iter().map(|&key| key.into()).collect();
-        self.sweep(|files| {
+        self.evict(|files| {
             let needed = |file: &Cached| file.key().is_some_and(|key| keys.contains(&key));
             files.into_iter().partition(needed)
         })
@@ -54,8 +54,8 @@ impl Store {
 
     /// Drops what was not used for longest until all files together have at most this many bytes. What was read or
     /// written through this store since it was opened stays, even if it is larger.
-    pub fn limit(&self, bytes: u64) -> Result<Swept> {
-        self.sweep(|mut files| {
+    pub fn limit(&self, bytes: u64) -> Result<Evicted> {
+        self.evict(|mut files| {
             // By path where times are equal, so that the same files go wherever folders are listed in another order.
             files.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
             let mut left: u64 = files.iter().map(|file| file.bytes).sum();
@@ -69,10 +69,10 @@ impl Store {
     }
 
     /// Removes the second half of what `divide` makes of all files.
-    fn sweep(&self, divide: impl FnOnce(Vec<Cached>) -> (Vec<Cached>, Vec<Cached>)) -> Result<Swept> {
+    fn evict(&self, divide: impl FnOnce(Vec<Cached>) -> (Vec<Cached>, Vec<Cached>)) -> Result<Evicted> {
         let (kept, dropped) = divide(self.files()?);
         dropped.iter().try_for_each(|file| remove(&file.path))?;
-        Ok(Swept { dropped: tally(&dropped), kept: tally(&kept) })
+        Ok(Evicted { dropped: tally(&dropped), kept: tally(&kept) })
     }
 
     fn files(&self) -> Result<Vec<Cached>> {
