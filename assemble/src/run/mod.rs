@@ -7,8 +7,10 @@ pub mod plan;
 #[cfg(feature = "cli")]
 pub mod watch;
 
+use crate::equation::Equation;
 use crate::equation::observer::Observer;
 use crate::exchange::listener::Unobserved;
+use crate::exchange::system::InstanceSystem;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{OutputRecord, RESULT, RunResults, write_all};
 use crate::proof::prove;
@@ -18,6 +20,7 @@ use crate::report::light_notes::light_notes;
 use crate::report::process::{cpu_seconds, peak_rss};
 use crate::report::summary::{HIDDEN_SHELLS, ReportSources, summary};
 use crate::report::unlit::unlit_notes;
+use crate::solve::settings::SolveSettings;
 use crate::solve::solve_prepared;
 use crate::verify::{Classic, classic};
 use equilux_bake::gltf_import::import_scene;
@@ -92,11 +95,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(evicted).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
-    let lights = [
-        light_notes(&scene, settings.light_units, settings.sky.as_ref()),
-        unlit_notes(&scene, &equation.direct.unlit, placed, &systems),
-    ]
-    .concat();
+    let lights = notes_on_lights(settings, &scene, equation, &systems);
     report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
 }
@@ -109,6 +108,18 @@ fn opened(job: &Job) -> Result<(Scene, Prepared)> {
     scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
     job.check(&scene)?;
     Ok((scene, prepared))
+}
+
+/// Notes on the scene's lights, and on lamps that light nothing.
+fn notes_on_lights(
+    settings: &SolveSettings,
+    scene: &Scene,
+    equation: &Equation,
+    systems: &[InstanceSystem],
+) -> Vec<String> {
+    let mut notes = light_notes(scene, settings.light_units, settings.sky.as_ref());
+    notes.extend(unlit_notes(scene, &equation.direct.unlit, &equation.placed, systems));
+    notes
 }
 
 fn unverified_note(job: &Job, classic: Option<&Classic>) -> Option<String> {
