@@ -29,7 +29,7 @@ pub struct Coupled {
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
-    /// The same, receiver by receiver; empty if there were none.
+    /// Number of form factors computed for each receiver; empty if none were computed.
     pub computed_by_row: Vec<u32>,
     /// F_kk with the intruders, if there are any.
     pub corrected: Option<Corrected>,
@@ -44,13 +44,13 @@ pub struct Corrected {
     pub self_block: Rows,
     /// The local equilibrium with the intruders, and the factors of the corrected matrix.
     pub local: LocalEquilibrium,
-    /// The instances that stand inside.
+    /// The intruders: instances with geometry inside this one's hull.
     pub intruders: Vec<usize>,
     /// Whether the block was computed or reused, and why.
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
-    /// The same, receiver by receiver; empty if there were none.
+    /// Number of form factors computed for each receiver; empty if none were computed.
     pub computed_by_row: Vec<u32>,
     /// Time spent on its form factors, summed over threads.
     pub time: Duration,
@@ -59,7 +59,7 @@ pub struct Corrected {
 /// Which blocks of an instance a run would compute or reuse, and why.
 #[derive(Debug)]
 pub struct ForeseenBlocks {
-    /// The instances that stand inside.
+    /// The intruders: instances with geometry inside this one's hull.
     pub intruders: Vec<usize>,
     /// The origin of the self block with the intruders, if there are any.
     pub corrected: Option<Origin>,
@@ -146,7 +146,7 @@ impl Coupler<'_> {
         intruders(&self.placed.instances, |k| &self.placed.part_of(k).part.geometry, instance)
     }
 
-    /// The self block with everything that stands inside the part.
+    /// The self block recomputed with the intruders.
     fn correct(&self, instance: usize, intruders: Vec<usize>) -> Result<Corrected> {
         let senders = [instance];
         let request = Request::of_self(&self.placed.world, &senders, self.resolution);

@@ -15,9 +15,9 @@ pub struct Group<'a> {
     systems: &'a [InstanceSystem<'a>],
     /// The instances, in order.
     pub members: Vec<usize>,
-    /// Where each member's elements lie in a vector of the group.
+    /// The range of each member's elements in a vector of the group.
     elements: Vec<Range<usize>>,
-    /// Where each member's senders lie among those of the whole scene.
+    /// The range of each member's senders among those of the whole scene.
     senders: Vec<Range<usize>>,
     /// For each member, the members that it receives light from.
     pub sees: Vec<Vec<usize>>,
@@ -79,7 +79,7 @@ impl<'a> Group<'a> {
         &self.systems[self.members[member]]
     }
 
-    /// Where a member's elements lie in a vector of the group.
+    /// The range of a member's elements in a vector of the group.
     pub fn elements_of(&self, member: usize) -> Range<usize> {
         self.elements[member].clone()
     }
@@ -89,7 +89,7 @@ impl<'a> Group<'a> {
         self.elements.last().map_or(0, |last| last.end)
     }
 
-    /// Where a member's senders lie among those of the whole scene.
+    /// The range of a member's senders among those of the whole scene.
     pub fn senders_of(&self, member: usize) -> Range<usize> {
         self.senders[member].clone()
     }

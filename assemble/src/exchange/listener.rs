@@ -21,7 +21,7 @@ pub struct FinishedRound<'a> {
     pub instances: &'a [usize],
     /// 1 for the first round of these instances.
     pub number: usize,
-    /// Error and energy after it.
+    /// Error and power balance after it.
     pub convergence: Convergence,
     /// Time spent so far in all rounds.
     pub times: &'a StepTimes,

@@ -1,4 +1,4 @@
-//! The result of an exchange: the light, the rounds that led to it and the proved error.
+//! The result of an exchange: the radiosity, the rounds and the proved error.
 
 use crate::exchange::energy::Energy;
 use crate::exchange::error_estimate::ErrorEstimate;

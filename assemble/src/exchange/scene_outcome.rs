@@ -12,7 +12,7 @@ use std::ops::Range;
 
 /// Accumulates the outcomes of groups.
 pub struct SceneOutcome {
-    /// Where each instance's elements lie among all.
+    /// The range of each instance's elements among all elements.
     places: Vec<Range<usize>>,
     solved: Vec<(Vec<usize>, GroupOutcome)>,
     column_sums: [f64; 2],

@@ -4,9 +4,9 @@
 //! light is smooth: its irradiance is gathered at points, with the same exact visibility.
 //!
 //! ```text
-//! surfaces that shine, suns → direct, averaged over the piece
-//! points and spots of light → direct, clipped exactly
-//! radiosity ρH of all elements, sky → reflected, at a point
+//! emitting surfaces, suns → direct light, averaged over the piece
+//! lamps → direct light, clipped exactly
+//! radiosity ρH of all elements, sky → reflected light, at points
 //! ```
 
 pub mod average;

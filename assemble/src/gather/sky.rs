@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 pub enum Sky {
     /// The same radiance everywhere, W/(m² sr).
     Uniform(Rgb),
-    /// An equirectangular picture of radiances, .hdr or .exr: its middle is −Z, right of that is +X, its top is +Y.
+    /// An equirectangular picture of radiances, .hdr or .exr, with −Z in the middle, +X to the right of it, and +Y at
+    /// the top.
     Picture(PathBuf),
 }
 
@@ -51,10 +52,10 @@ pub fn dome(centre: DVec3, size: f64) -> Geometry {
     Geometry { elements: order.into_iter().map(|i| elements[i]).collect(), faces, clusters }
 }
 
-/// The radiances of a sky, in memory.
+/// The loaded radiances of a sky, W/(m² sr).
 #[derive(Debug)]
 pub enum Radiances {
-    /// The same everywhere.
+    /// The same radiance everywhere.
     Uniform(Rgb),
     /// By direction.
     Picture(Picture),
@@ -89,8 +90,8 @@ impl Radiances {
     }
 }
 
-/// The picture in `file`. A Radiance file begins with `#?RADIANCE` or, from many programs, with `#?RGBE`, of which the strict
-/// decoder knows only the first.
+/// Load the picture in `file`. A Radiance file begins with `#?RADIANCE` or, from many programs, with `#?RGBE`; the
+/// strict decoder accepts only the first.
 fn open(file: &Path) -> ImageResult<DynamicImage> {
     let reader = ImageReader::open(file)?.with_guessed_format()?;
     match reader.format() {

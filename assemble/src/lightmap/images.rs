@@ -23,8 +23,8 @@ pub enum Units {
     #[default]
     Irradiance,
     // An exposure of 683 turns a watt of green light into 683 lm.
-    /// Irradiance over π, the radiance of a white surface, which Bevy multiplies by its lightmap_exposure (683 for watts) to
-    /// get cd/m²
+    /// Irradiance over π, the radiance of a white surface, which Bevy multiplies by its lightmap_exposure (683 for
+    /// watts) to get cd/m²
     Bevy,
 }
 
@@ -117,12 +117,12 @@ fn half_floats(
     Ok(file.into_inner())
 }
 
-/// The PNG file of an image: irradiance as the pictures show a white surface.
+/// The PNG file of an image: irradiance, displayed as a white surface in the pictures.
 pub fn png(lightmap: &Lightmap, number: usize, exposure: Exposure) -> io::Result<Vec<u8>> {
     encode(lightmap, number, |tile, texel| exposure.shown(lightmap.irradiance[tile][texel]))
 }
 
-/// The PNG file of an image: radiosity as the pictures show it.
+/// The PNG file of an image: radiosity, displayed as in the pictures.
 pub fn shown_png(lightmap: &Lightmap, number: usize, exposure: Exposure) -> io::Result<Vec<u8>> {
     encode(lightmap, number, |tile, texel| exposure.shown(lightmap.radiosity(tile, texel)))
 }
@@ -130,7 +130,7 @@ pub fn shown_png(lightmap: &Lightmap, number: usize, exposure: Exposure) -> io::
 /// The brightest radiosity of each material of each instance, W/m².
 pub type Peaks = BTreeMap<(usize, MaterialId), f64>;
 
-/// See [`Peaks`].
+/// The peaks of all materials: see [`Peaks`].
 pub fn peaks(lightmap: &Lightmap) -> Peaks {
     let mut peaks = Peaks::new();
     for (number, tile) in lightmap.tiles.iter().enumerate() {
@@ -142,7 +142,8 @@ pub fn peaks(lightmap: &Lightmap) -> Peaks {
     peaks
 }
 
-/// The PNG file of an image: radiosity as a share of its peak, so that eight bits keep dim walls beside bright lamps.
+/// The PNG file of an image: radiosity as a share of its peak, so that eight bits preserve dim walls next to bright
+/// lamps.
 pub fn relative_png(lightmap: &Lightmap, number: usize, peaks: &Peaks) -> io::Result<Vec<u8>> {
     let of_tile: Vec<f64> =
         lightmap.tiles.iter().map(|tile| peaks[&(tile.instance, lightmap.material_of(tile).0)]).collect();

@@ -67,7 +67,7 @@ pub struct Lightmap<'a> {
     pub irradiance: Vec<Vec<Rgb>>,
     /// The mean direction of the light of each of these texels, if requested: see [`Lightmap::with_directions`].
     pub directions: Option<Vec<Vec<[f64; 3]>>>,
-    /// What each of these texels holds.
+    /// The contents of each of these texels.
     holds: Vec<Vec<Holds>>,
     /// The materials of each instance.
     materials: Vec<Vec<Material>>,
@@ -75,7 +75,7 @@ pub struct Lightmap<'a> {
     tints: Option<[Vec<Vec<Rgb>>; 2]>,
 }
 
-/// What a texel holds.
+/// The contents of a texel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Holds {
     /// Nothing; the chart is not near.

@@ -66,7 +66,7 @@ pub struct PartStatus {
     pub elements: usize,
     /// State of its self block.
     pub own: BlockState,
-    /// The same in a sentence.
+    /// The reason for this state, as a sentence.
     pub reason: String,
 }
 
@@ -79,7 +79,7 @@ pub struct InstanceStatus {
     pub part: usize,
     /// State of its coupling block.
     pub coupling: BlockState,
-    /// The same in a sentence.
+    /// The reason for this state, as a sentence.
     pub reason: String,
     /// State of its self block with other parts inside it, if there are any.
     pub inside: Option<BlockState>,

@@ -39,7 +39,7 @@ pub struct OutputRequests {
     pub exact_rows: ExactRows,
     /// Whether to solve the classic matrix too, and report the difference.
     pub verify: bool,
-    /// Whether to report for each part and block whether it was computed or reused, and why.
+    /// Whether to report for each part and block whether it was computed, reused or skipped, and why.
     pub explain: bool,
 }
 

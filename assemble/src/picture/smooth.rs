@@ -1,10 +1,10 @@
 //! Irradiance at the corners of elements, averaged over the elements that share them. Input: elements and the
 //! irradiance of each. Output: one value for each corner.
 //!
-//! A corner has the mean of the elements around it that lie in about the same plane and whose centroids see each other:
-//! light does not leak below a wall that stands on a floor. An element whose centroid is covered, by a crate on the floor
-//! or by a rug that lies on it, has the light of the crevice; where it is visible beside the cover, it takes the light of
-//! the elements around, and gives none.
+//! A corner gets the mean of the adjacent elements that lie in about the same plane and whose centroids see each
+//! other, so that light does not leak below a wall that stands on a floor. An element whose centroid is covered, by a
+//! crate on the floor or by a rug, has only the light of the gap below the cover; its visible part gets the light of
+//! the adjacent elements, and it contributes none.
 
 use equilux_bake::rays::RayIndex;
 use equilux_formats::{Element, Rgb};
@@ -22,10 +22,10 @@ const MIN_SMOOTH_COSINE: f64 = 0.9;
 /// Height above an element at which visibility between centres is tested, as a share of the element's size.
 const TEST_HEIGHT_SHARE: f64 = 1e-3;
 
-/// A share of the brightest light that is rounding.
+/// Irradiance below this share of the brightest is rounding.
 const DARK_SHARE: f64 = 1e-9;
 
-/// A centroid is covered by what lies this close above it, as a share of the element's size.
+/// Maximum distance of geometry above a covered centroid, as a share of the element's size.
 const MAX_COVER_DISTANCE_SHARE: f64 = 0.1;
 
 /// Irradiance at each corner, W/m²; the last value of a triangle is unused.

@@ -32,7 +32,7 @@ pub struct Report {
     pub instances: usize,
     /// Element size in force, as text.
     pub element_size: String,
-    /// What became of the blocks.
+    /// Counts of computed, reused and skipped blocks.
     pub blocks: Blocks,
     /// Number of stored form factors of all blocks.
     pub form_factors_stored: usize,
@@ -40,7 +40,7 @@ pub struct Report {
     pub form_factors_computed: usize,
     /// Time spent.
     pub seconds: Seconds,
-    /// The exchange, round by round.
+    /// The rounds of the exchange.
     pub rounds: Vec<RoundReport>,
     /// Unknowns of the coarse space; 0 if there is none.
     pub coarse_unknowns: usize,
@@ -92,7 +92,7 @@ pub struct PartReport {
     pub stored: usize,
 }
 
-/// What became of the blocks.
+/// Counts of computed, reused and skipped blocks.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Blocks {
     /// Self blocks computed in this run.

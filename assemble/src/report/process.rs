@@ -13,7 +13,7 @@ pub fn peak_rss() -> Option<usize> {
     Some(kilobytes * 1024)
 }
 
-/// The most memory this process held so far, bytes; none where the system does not report it.
+/// Peak memory of this process so far, bytes; none where the operating system does not report it.
 #[cfg(all(unix, not(target_os = "linux")))]
 pub fn peak_rss() -> Option<usize> {
     // Kilobytes, except on Apple's systems, which use bytes.

@@ -20,7 +20,7 @@ use last_light::{keep, last_light};
 use settings::SolveSettings;
 use std::path::Path;
 
-/// A scene in equilibrium.
+/// A solved scene.
 #[derive(Debug)]
 pub struct Solved {
     /// The radiosity equation.

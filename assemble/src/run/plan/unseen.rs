@@ -13,7 +13,7 @@ pub fn unseen_pairs(world: &World) -> Vec<[usize; 2]> {
     pairs.filter(|&[a, b]| !can_see(&fronts[a], &fronts[b])).collect()
 }
 
-/// One side of a face that has elements.
+/// A side of a face that has elements.
 struct Front<'a> {
     corners: &'a [DVec3],
     normal: DVec3,
