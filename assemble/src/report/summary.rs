@@ -61,7 +61,7 @@ pub fn summary(sources: &ReportSources) -> Report {
         element_size: String::new(),
         blocks: blocks(sources),
         form_factors_stored: systems.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
-        form_factors_computed: form_factors_computed(placed, coupled),
+        form_factors_computed: form_factors_computed(placed, coupled) + equation.direct.computed,
         seconds: seconds(placed, coupled, &outcome.times),
         rounds: rounds(sources),
         coarse_unknowns: outcome.coarse_unknowns,

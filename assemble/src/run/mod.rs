@@ -7,8 +7,10 @@ pub mod plan;
 #[cfg(feature = "cli")]
 pub mod watch;
 
+use crate::equation::Equation;
 use crate::equation::observer::Observer;
 use crate::exchange::listener::Unobserved;
+use crate::exchange::system::InstanceSystem;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{OutputRecord, RESULT, RunResults, write_all};
 use crate::proof::prove;
@@ -84,7 +86,6 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&sources) };
     report.blocks.leave_out(HIDDEN_SHELLS, scene.hidden_shells);
     report.bytes.peak_rss = peak;
-    report.form_factors_computed += equation.direct.computed;
     if requests.explain {
         report.explained = explained(placed, &equation.coupled);
     }
@@ -92,13 +93,15 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(evicted).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
-    let lights = [
-        light_notes(&scene, settings.light_units, settings.sky.as_ref()),
-        unlit_notes(&scene, &equation.direct.unlit, placed, &systems),
-    ]
-    .concat();
+    let lights = notes_on_lights(job, &scene, equation, &systems);
     report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
+}
+
+fn notes_on_lights(job: &Job, scene: &Scene, equation: &Equation, systems: &[InstanceSystem]) -> Vec<String> {
+    let mut notes = light_notes(scene, job.settings.light_units, job.settings.sky.as_ref());
+    notes.extend(unlit_notes(scene, &equation.direct.unlit, &equation.placed, systems));
+    notes
 }
 
 /// The scene, and its parts divided into elements. Fails where the job is not possible.
