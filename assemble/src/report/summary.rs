@@ -3,8 +3,7 @@
 use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify};
 use crate::equation::Equation;
 use crate::equation::coupling::Coupled;
-use crate::exchange::outcome::Outcome;
-use crate::exchange::outcome::Round;
+use crate::exchange::outcome::{Outcome, Round};
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
 use crate::proof::{Proof, ResidualStatistics};
