@@ -1,6 +1,6 @@
 //! Solids that reach into each other are named, with the elements that are lost in them; those that only touch are not.
 
-use equilux_assemble::equation::interpenetration::{Inside, elements_inside, sentences};
+use equilux_assemble::equation::interpenetration::{ElementsInside, elements_inside, sentences};
 use equilux_bake::world::World;
 use equilux_formats::{Geometry, Instance, Part, PartId};
 use equilux_tests::rooms::paint;
@@ -32,7 +32,7 @@ impl Placed {
         Self { geometries, instances: parts.iter().enumerate().map(instance).collect(), world }
     }
 
-    fn inside(&self) -> Inside {
+    fn inside(&self) -> ElementsInside {
         elements_inside(&self.world, &self.instances, &self.geometries.iter().collect::<Vec<_>>())
     }
 }

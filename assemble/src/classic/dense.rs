@@ -64,7 +64,7 @@ impl Dense {
         if monitor.stopped() { Err(Error::Stopped) } else { Ok(matrix) }
     }
 
-    /// ClassicBytes of the matrix.
+    /// Size of the matrix, bytes.
     pub fn bytes(&self) -> usize {
         self.values.len() * size_of::<f64>()
     }

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 
 /// Options for a scene and its assembly.
 #[derive(Args)]
-pub struct Assembly {
+pub struct AssemblyOptions {
     /// The scene, a .gltf or .glb file, or a folder with one
     #[arg(required = true, value_parser = values::scene)]
     pub scene: Option<PathBuf>,
@@ -80,7 +80,7 @@ pub struct Assembly {
     depfile: Option<PathBuf>,
 }
 
-impl Assembly {
+impl AssemblyOptions {
     /// The job, without explanations and without a picture from a camera.
     pub fn job(&self) -> Job {
         let default = if self.verify { Goal { error: 0.0, ..Goal::default() } } else { Goal::default() };

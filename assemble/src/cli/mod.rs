@@ -13,7 +13,7 @@ use crate::report::Report;
 use crate::run::job::Job;
 use crate::run::plan::{Plan, plan};
 use assembling::{Invocation, once, watched};
-use assembly::Assembly;
+use assembly::AssemblyOptions;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 use equilux_bake::cli::{program, progress};
@@ -30,7 +30,7 @@ struct Arguments {
     #[command(subcommand)]
     command: Option<Task>,
     #[command(flatten)]
-    assembly: Assembly,
+    assembly: AssemblyOptions,
     /// Also print the paper's table of steps, all rounds, sums and sizes, and all notes
     #[arg(long)]
     verbose: bool,
@@ -55,7 +55,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Task {
     /// Dry run: show what would be computed, reused and skipped, and why
-    Plan(Assembly),
+    Plan(AssemblyOptions),
     /// Draw the result from a camera: render.png, and its difference from a reference: error.png
     Render(Render),
     /// Try settings within a time budget and report error against run time
@@ -102,7 +102,7 @@ fn run(arguments: Arguments) -> anyhow::Result<String> {
             Ok(printed_text(assembly.options.json, &plan, Plan::text))
         }
         Some(Task::Render(render)) => {
-            let Assembly { options, .. } = &render.assembly;
+            let AssemblyOptions { options, .. } = &render.assembly;
             options.set_threads()?;
             let invocation =
                 Invocation { job: render.job(), target_error: None, live: None, json: options.json };

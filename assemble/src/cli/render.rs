@@ -1,6 +1,6 @@
 //! Options for a picture from a camera.
 
-use super::assembly::Assembly;
+use super::assembly::AssemblyOptions;
 use super::values;
 use crate::outputs::requests::{OutputRequests, Pictures};
 use crate::picture::shot::{Eye, Shading, Shot};
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub struct Render {
     #[command(flatten)]
-    pub assembly: Assembly,
+    pub assembly: AssemblyOptions,
     /// The scene's camera with this name, or with this number, counting from 1 [default: the first, or one that shows
     /// the whole scene]
     #[arg(long, value_name = "NAME|N")]

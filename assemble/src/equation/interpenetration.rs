@@ -26,10 +26,10 @@ pub fn notes(placed: &PlacedParts) -> Vec<String> {
 }
 
 /// Elements inside a solid, as element numbers of the scene, by instance and instance of the solid.
-pub type Inside = BTreeMap<[usize; 2], Vec<usize>>;
+pub type ElementsInside = BTreeMap<[usize; 2], Vec<usize>>;
 
 /// A note on each of the first few pairs of instances.
-pub fn sentences(inside: &Inside, instances: &[Instance]) -> Vec<String> {
+pub fn sentences(inside: &ElementsInside, instances: &[Instance]) -> Vec<String> {
     let name = |k: usize| format!("`{}`", instances[k].name);
     let sentence = |(&[own, other], elements): (&[usize; 2], &Vec<usize>)| {
         let named: Vec<String> = elements.iter().take(MAX_NAMED).map(usize::to_string).collect();
@@ -50,9 +50,9 @@ pub fn sentences(inside: &Inside, instances: &[Instance]) -> Vec<String> {
 }
 
 /// The elements of a world that lie inside solids. `parts`: the geometries of the instances' parts.
-pub fn elements_inside(world: &World, instances: &[Instance], parts: &[&Geometry]) -> Inside {
+pub fn elements_inside(world: &World, instances: &[Instance], parts: &[&Geometry]) -> ElementsInside {
     let solids: Vec<Vec<Solid>> = parts.iter().map(|part| solids(part)).collect();
-    let mut inside = Inside::new();
+    let mut inside = ElementsInside::new();
     let mut index = None;
     for (other, instance) in instances.iter().enumerate() {
         let (geometry, of_part) = (parts[instance.part.index()], &solids[instance.part.index()]);
@@ -61,7 +61,7 @@ pub fn elements_inside(world: &World, instances: &[Instance], parts: &[&Geometry
         }
         let to_part = instance.placement.inverse();
         for own in 0..instances.len() {
-            let mut found = Search { world, own, other, geometry, to_part }.elements(of_part);
+            let mut found = SolidSearch { world, own, other, geometry, to_part }.elements(of_part);
             if !found.is_empty() {
                 let index = index.get_or_insert_with(|| RayIndex::new(&world.elements));
                 found.retain(|&element| sees_backs(world, index, element, other));
@@ -74,7 +74,7 @@ pub fn elements_inside(world: &World, instances: &[Instance], parts: &[&Geometry
     inside
 }
 
-struct Search<'a> {
+struct SolidSearch<'a> {
     world: &'a World,
     own: usize,
     other: usize,
@@ -83,7 +83,7 @@ struct Search<'a> {
     to_part: DAffine3,
 }
 
-impl Search<'_> {
+impl SolidSearch<'_> {
     /// The elements of `own` inside any of the solids of `other`.
     fn elements(&self, solids: &[Solid]) -> Vec<usize> {
         let Some(root) = self.world.root_of(self.own) else { return vec![] };

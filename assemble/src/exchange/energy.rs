@@ -24,9 +24,9 @@ pub struct Energy {
 
 /// The share of each element's sent power that arrives in the group.
 #[derive(Debug)]
-pub struct Columns(Vec<f64>);
+pub struct ColumnSums(Vec<f64>);
 
-impl Columns {
+impl ColumnSums {
     /// Column sums Σ_i A_i F_ij / A_j, one for each element of the group.
     pub fn of(group: &Group) -> Self {
         let mut arriving = vec![0.0; group.scene_senders()];

@@ -4,7 +4,7 @@
 use crate::exchange::block_correction::BlockCorrection;
 use crate::exchange::bound::Margin;
 use crate::exchange::coarse::{Coarse, pays};
-use crate::exchange::energy::Columns;
+use crate::exchange::energy::ColumnSums;
 use crate::exchange::error_estimate::ErrorEstimate;
 use crate::exchange::groups::Group;
 use crate::exchange::listener::{FinishedRound, Listener};
@@ -32,7 +32,7 @@ pub struct GroupSolver<'a> {
     group: &'a Group<'a>,
     coarse: Option<Coarse<'a>>,
     margin: Margin,
-    columns: Columns,
+    columns: ColumnSums,
     correction: BlockCorrection<'a>,
     krylov: bool,
 }
@@ -101,7 +101,7 @@ impl<'a> GroupSolver<'a> {
             Method::Auto | Method::Gmres => PRECONDITIONER_TURNS,
         };
         let margin = timed(&mut spent.margin, || Margin::of(group, coarse.as_ref(), PRECONDITIONER_TURNS));
-        let columns = timed(&mut spent.account, || Columns::of(group));
+        let columns = timed(&mut spent.account, || ColumnSums::of(group));
         let correction = BlockCorrection::new(group, turns, krylov.then_some(PRECONDITIONER_TOLERANCE));
         Self { group, coarse, margin, columns, correction, krylov }
     }

@@ -6,7 +6,7 @@ use equilux_bake::elements::clusters::hierarchy;
 use equilux_formats::{ClusterTree, Corners, Element, Rgb};
 
 /// Emitting polygons, their hierarchy and their emission.
-pub struct Surfaces {
+pub struct EmittingSurfaces {
     /// Polygons in faces of the world.
     pub elements: Vec<Element>,
     /// The hierarchy of the elements.
@@ -16,7 +16,7 @@ pub struct Surfaces {
 }
 
 /// All emitting surfaces. `emission`: W/m², one row an element.
-pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> Surfaces {
+pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> EmittingSurfaces {
     let mut found: Vec<(Element, Rgb)> = Vec::new();
     for k in 0..placed.instances.len() {
         let clusters = &placed.part_of(k).part.geometry.clusters;
@@ -37,11 +37,11 @@ pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> Surfaces {
     let elements: Vec<Element> = found.iter().map(|(element, _)| *element).collect();
     if elements.is_empty() {
         let clusters = ClusterTree::new(&[], vec![]).expect("nothing is a tree");
-        return Surfaces { elements, clusters, emission: vec![] };
+        return EmittingSurfaces { elements, clusters, emission: vec![] };
     }
     let (order, clusters) = hierarchy(&elements);
     let (elements, emission) = order.into_iter().map(|i| found[i]).unzip();
-    Surfaces { elements, clusters, emission }
+    EmittingSurfaces { elements, clusters, emission }
 }
 
 /// The emission of all elements of a node, if it is uniform.

@@ -33,12 +33,12 @@ pub struct Lamp {
 }
 
 /// Distance of parallel light, in sizes of the scene: directions differ by less than 1e-6.
-const FAR: f64 = 1e6;
+const PARALLEL_LIGHT_DISTANCE: f64 = 1e6;
 
 impl Lamp {
     /// The lamp for a light of a scene around `centre` with this `size`, metres.
     pub fn of(light: &PunctualLight, centre: DVec3, size: f64) -> Self {
-        let far = FAR * size;
+        let far = PARALLEL_LIGHT_DISTANCE * size;
         let (position, intensity) = match light.kind {
             LightKind::Directional => {
                 (centre - light.direction * far, light.intensity.map(|lux| lux * far * far))

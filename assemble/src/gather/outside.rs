@@ -17,7 +17,7 @@ use std::f64::consts::{PI, TAU};
 pub const LUMENS_PER_WATT: f64 = 683.0;
 
 /// Distance of suns, in sizes of the scene.
-const FAR: f64 = 1e4;
+const SUN_DISTANCE: f64 = 1e4;
 
 /// Number of kites that form a sun; its outline has twice as many corners.
 const KITES: usize = 8;
@@ -66,7 +66,7 @@ pub fn in_watts(light: &PunctualLight, units: Option<LightUnits>) -> PunctualLig
 
 /// A sun as polygons far away that send as much irradiance, at normal incidence, as parallel light of its intensity.
 fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> Sun {
-    let distance = FAR * size;
+    let distance = SUN_DISTANCE * size;
     let middle = centre - light.direction * distance;
     let (u, v) = light.direction.any_orthonormal_pair();
     // A polygon of the disc's area.

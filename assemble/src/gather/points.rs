@@ -29,7 +29,7 @@ const MAX_DISTANCE_SHARE: f64 = 1e-4;
 const MIN_NORMAL_COSINE: f64 = 0.9;
 
 /// Number of points that are gathered together; stop requests are checked between batches.
-const BATCH: usize = 256;
+const BATCH_POINTS: usize = 256;
 
 /// A point on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -102,7 +102,7 @@ pub fn light(
     found.sort_by_key(|&(_, _, element)| element);
     let mut lights = vec![None; places.len()];
     monitor.begin("light of points", found.len(), ROWS_PER_POINT * found.len() as f64);
-    for batch in found.chunks(BATCH) {
+    for batch in found.chunks(BATCH_POINTS) {
         if monitor.stopped() && !was_stopped {
             return Err(Error::Stopped);
         }

@@ -23,7 +23,7 @@ pub enum Sky {
 }
 
 /// Distance of the cube's sides, in sizes of the scene: directions differ by less than 1e-3.
-const FAR: f64 = 1e3;
+const SKY_DISTANCE: f64 = 1e3;
 
 /// The sky's cells around a scene of this centre and size, metres.
 pub fn dome(centre: DVec3, size: f64) -> Geometry {
@@ -34,7 +34,7 @@ pub fn dome(centre: DVec3, size: f64) -> Geometry {
             // Corners run counter-clockwise seen from inside.
             let (n, u) = (DVec3::AXES[axis] * sign, DVec3::AXES[(axis + 1) % 3]);
             let v = u.cross(n);
-            let at = |s: f64, t: f64| centre + (n + u * s + v * t) * (FAR * size);
+            let at = |s: f64, t: f64| centre + (n + u * s + v * t) * (SKY_DISTANCE * size);
             let face = FaceId(faces.len() as u32);
             faces.push(Face::new(vec![at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)]));
             let line = |k: usize| (FRAC_PI_4 * (2.0 * k as f64 / SKY_CELLS as f64 - 1.0)).tan();

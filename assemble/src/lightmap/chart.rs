@@ -2,10 +2,10 @@
 //! charts; each side belongs to exactly one of them.
 //!
 //! A chart grows from its largest side over smooth contacts, as long as sides face the chart's direction to within
-//! [`SMOOTH`], so that no texel is stretched by more than 1/cos 30° = 1.15. It is therefore a height field over a
+//! [`MAX_SMOOTH_ANGLE`], so that no texel is stretched by more than 1/cos 30° = 1.15. It is therefore a height field over a
 //! plane, unless it winds around and covers itself; in that case each of its flat regions becomes a chart of its own.
 
-use super::contacts::{SMOOTH, smooth_contacts};
+use super::contacts::{MAX_SMOOTH_ANGLE, smooth_contacts};
 use super::overlap::any_overlap;
 use super::side::{SurfaceSide, sides};
 use equilux_bake::geometry::planes;
@@ -78,7 +78,7 @@ impl Growth {
     }
 
     fn faces(&self, seed: usize, side: usize) -> bool {
-        self.sides[seed].normal.dot(self.sides[side].normal) >= SMOOTH.cos()
+        self.sides[seed].normal.dot(self.sides[side].normal) >= MAX_SMOOTH_ANGLE.cos()
     }
 
     /// Divide `members` into connected groups, each grown from its largest side over sides for which `fit` holds.

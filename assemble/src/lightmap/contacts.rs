@@ -11,7 +11,7 @@ use std::f64::consts::FRAC_PI_6;
 
 /// Sides that meet at an angle of at most this belong to one curved surface, radians: for example, a cylinder with
 /// twelve sides.
-pub const SMOOTH: f64 = FRAC_PI_6 * (1.0 + 1e-9);
+pub const MAX_SMOOTH_ANGLE: f64 = FRAC_PI_6 * (1.0 + 1e-9);
 
 /// Two sides with a common segment of edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,7 +29,7 @@ pub fn opposed_contacts(sides: &[SurfaceSide]) -> impl Iterator<Item = Contact> 
     contacts(sides, tolerance(sides)).into_iter().filter(|contact| contact.opposed)
 }
 
-/// The contacts across which light changes smoothly: the sides' normals differ by at most [`SMOOTH`], and no third
+/// The contacts across which light changes smoothly: the sides' normals differ by at most [`MAX_SMOOTH_ANGLE`], and no third
 /// side stands on the edge and separates the light on them.
 pub fn smooth_contacts(sides: &[SurfaceSide]) -> Vec<Contact> {
     let tolerance = tolerance(sides);
@@ -40,7 +40,7 @@ pub fn smooth_contacts(sides: &[SurfaceSide]) -> Vec<Contact> {
     }
     let smooth = |contact: &&Contact| {
         let [a, b] = contact.sides.map(|side| sides[side].normal);
-        contact.opposed && a.dot(b) >= SMOOTH.cos() && {
+        contact.opposed && a.dot(b) >= MAX_SMOOTH_ANGLE.cos() && {
             let front = (a + b).normalize();
             !of_side[contact.sides[0]].iter().any(|other| separates(contact, other, sides, front, tolerance))
         }
@@ -71,7 +71,7 @@ fn separates(
 }
 
 /// An edge of a side, and its extent along the sweep axis.
-struct Edge {
+struct SideEdge {
     side: usize,
     ends: [DVec3; 2],
     reach: [f64; 2],
@@ -81,10 +81,10 @@ struct Edge {
 /// threads.
 fn contacts(sides: &[SurfaceSide], tolerance: f64) -> Vec<Contact> {
     let axis = longest_axis(sides);
-    let mut edges: Vec<Edge> =
+    let mut edges: Vec<SideEdge> =
         sides.iter().enumerate().flat_map(|(number, side)| edges_of(number, side, axis)).collect();
     edges.sort_by(|a, b| a.reach[0].total_cmp(&b.reach[0]).then(a.side.cmp(&b.side)));
-    let (mut found, mut open): (Vec<Contact>, Vec<&Edge>) = (Vec::new(), Vec::new());
+    let (mut found, mut open): (Vec<Contact>, Vec<&SideEdge>) = (Vec::new(), Vec::new());
     for edge in &edges {
         open.retain(|other| other.reach[1] >= edge.reach[0] - tolerance);
         found.extend(open.iter().filter_map(|other| contact(other, edge, tolerance)));
@@ -99,16 +99,16 @@ fn longest_axis(sides: &[SurfaceSide]) -> usize {
     (0..3).max_by(|&a, &b| extent[a].total_cmp(&extent[b])).unwrap_or(0)
 }
 
-fn edges_of(number: usize, side: &SurfaceSide, axis: usize) -> impl Iterator<Item = Edge> {
+fn edges_of(number: usize, side: &SurfaceSide, axis: usize) -> impl Iterator<Item = SideEdge> {
     let corners = side.corners.as_slice();
     (0..corners.len()).map(move |i| {
         let ends = [corners[i], corners[(i + 1) % corners.len()]];
         let [from, to] = ends.map(|p| p[axis]);
-        Edge { side: number, ends, reach: [from.min(to), from.max(to)] }
+        SideEdge { side: number, ends, reach: [from.min(to), from.max(to)] }
     })
 }
 
-fn contact(a: &Edge, b: &Edge, tolerance: f64) -> Option<Contact> {
+fn contact(a: &SideEdge, b: &SideEdge, tolerance: f64) -> Option<Contact> {
     if a.side == b.side {
         return None;
     }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Default number of texels of an atlas.
 const DEFAULT_TEXELS: f64 = 1024.0 * 1024.0;
 /// The share of an image that rectangles typically fill.
-const FILLED: f64 = 0.85;
+const FILLED_SHARE: f64 = 0.85;
 
 /// A part's charts, by its author or generated.
 #[derive(Debug)]
@@ -79,14 +79,14 @@ impl Estimate {
     /// Number of texels of this size, metres, that images will have.
     pub fn texels(&self, size: f64) -> f64 {
         let [a, b, c] = self.coefficients;
-        (a + b / size + c / (size * size)) / FILLED
+        (a + b / size + c / (size * size)) / FILLED_SHARE
     }
 
     /// The texel size, rounded to two digits, that results in the default number of texels, or in twice the number
     /// for margins alone.
     pub fn suitable_size(&self) -> f64 {
         let [a, b, c] = self.coefficients;
-        let spare = (FILLED * DEFAULT_TEXELS).max(2.0 * a) - a;
+        let spare = (FILLED_SHARE * DEFAULT_TEXELS).max(2.0 * a) - a;
         let size = 2.0 * c / ((b * b + 4.0 * c * spare).sqrt() - b);
         // Printed and parsed, so that the printed size is the size in use.
         if size.is_finite() { format!("{size:.1e}").parse().unwrap_or(size) } else { 1.0 }

@@ -25,7 +25,7 @@ pub fn interpolated(
 ) -> Vec<Rgb> {
     let number: HashMap<[u32; 2], usize> =
         texels.texels.iter().enumerate().map(|(n, texel)| (texel.at, n)).collect();
-    let mut field = Field { gather, texels, sample, smooth, number, known: HashMap::new() };
+    let mut field = TexelField { gather, texels, sample, smooth, number, known: HashMap::new() };
     let mut found = vec![None; texels.texels.len()];
     let mut open = field.squares();
     while !open.is_empty() {
@@ -50,7 +50,7 @@ struct Square {
 }
 
 /// The known values of a chart's texels.
-struct Field<'a, S, T> {
+struct TexelField<'a, S, T> {
     gather: &'a Gather,
     texels: &'a Texels,
     sample: S,
@@ -59,7 +59,7 @@ struct Field<'a, S, T> {
     known: HashMap<usize, Rgb>,
 }
 
-impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> Field<'_, S, T> {
+impl<S: Fn(&[&Texel]) -> Vec<Rgb>, T: Fn([Rgb; 4], Rgb, Rgb) -> bool> TexelField<'_, S, T> {
     /// Squares that cover all texels.
     fn squares(&self) -> Vec<Square> {
         let mut corners: Vec<[u32; 2]> = self

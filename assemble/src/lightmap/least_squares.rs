@@ -6,7 +6,7 @@
 //! conjugate gradients (Hestenes & Stiefel 1952), sequentially, so that the bits do not depend on threads.
 
 /// A row: indices of values, with weights.
-pub type Difference = Vec<(usize, f64)>;
+pub type DifferenceRow = Vec<(usize, f64)>;
 
 /// λ: a difference shrinks to about a thousandth.
 const STIFFNESS: f64 = 1e3;
@@ -18,7 +18,7 @@ const RESIDUAL_REDUCTION: f64 = 1e-7;
 const MAX_STEPS: usize = 1000;
 
 /// The change y of the values `v`.
-pub fn correction(rows: &[Difference], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f64> {
+pub fn correction(rows: &[DifferenceRow], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f64> {
     let apply = |x: &[f64]| {
         let mut y = x.to_vec();
         add_smoothness(pairs, x, &mut y);
@@ -57,7 +57,7 @@ fn add_smoothness(pairs: &[[usize; 2]], x: &[f64], y: &mut [f64]) {
 }
 
 /// y += λCᵀC x.
-fn add_agreement(rows: &[Difference], x: &[f64], y: &mut [f64]) {
+fn add_agreement(rows: &[DifferenceRow], x: &[f64], y: &mut [f64]) {
     for row in rows {
         let difference: f64 = row.iter().map(|&(i, weight)| weight * x[i]).sum();
         row.iter().for_each(|&(i, weight)| y[i] += STIFFNESS * difference * weight);

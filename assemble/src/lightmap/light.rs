@@ -4,7 +4,7 @@
 //! interpolated elsewhere.
 
 use super::field::interpolated;
-use super::texels::{Footprint, Texel, Texels};
+use super::texels::{Texel, TexelFootprint, Texels};
 use crate::gather::Gather;
 use crate::gather::faces::CoplanarFaces;
 use crate::gather::surface_piece::SurfacePiece;
@@ -80,10 +80,10 @@ impl<'a> TexelLight<'a> {
 
     fn mean_directions(&self, texels: &[&Texel], planes: &[CoplanarFaces]) -> Vec<Rgb> {
         let largest = |texel: &&Texel| {
-            let by_area = |a: &&Footprint, b: &&Footprint| a.area.total_cmp(&b.area);
+            let by_area = |a: &&TexelFootprint, b: &&TexelFootprint| a.area.total_cmp(&b.area);
             texel.footprints.iter().max_by(by_area).expect("a texel holds some of its chart").clone()
         };
-        let footprints: Vec<Footprint> = texels.iter().map(largest).collect();
+        let footprints: Vec<TexelFootprint> = texels.iter().map(largest).collect();
         let pieces: Vec<SurfacePiece> =
             footprints.iter().map(|footprint| surface_piece(footprint, planes)).collect();
         self.gather.directions(&pieces).into_iter().map(|direction| Rgb(direction.to_array())).collect()
@@ -116,6 +116,6 @@ fn means(
     texels.iter().map(mean).collect()
 }
 
-fn surface_piece<'a>(footprint: &'a Footprint, planes: &'a [CoplanarFaces<'a>]) -> SurfacePiece<'a> {
+fn surface_piece<'a>(footprint: &'a TexelFootprint, planes: &'a [CoplanarFaces<'a>]) -> SurfacePiece<'a> {
     SurfacePiece { corners: &footprint.corners, normal: footprint.normal, plane: &planes[footprint.patch] }
 }

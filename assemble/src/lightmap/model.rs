@@ -22,7 +22,7 @@ const FLOAT: u32 = 5126;
 const ARRAY_BUFFER: u32 = 34962;
 
 /// The contents of the model's textures.
-pub enum Look<'a> {
+pub enum ModelLook<'a> {
     /// Radiosity as a share of its peak, used as emission in units of radiance. Base colours are kept.
     Emissive(&'a Peaks),
     /// The colours of the pictures, used for unlit surfaces.
@@ -30,9 +30,9 @@ pub enum Look<'a> {
 }
 
 /// The bytes of the model file. `images`: PNG files.
-pub fn model(lightmap: &Lightmap, images: &[Vec<u8>], look: &Look) -> io::Result<Vec<u8>> {
-    let mut document = Document::default();
-    let meshes: Vec<Vec<Primitive>> =
+pub fn model(lightmap: &Lightmap, images: &[Vec<u8>], look: &ModelLook) -> io::Result<Vec<u8>> {
+    let mut document = ModelDocument::default();
+    let meshes: Vec<Vec<ModelPrimitive>> =
         (0..lightmap.atlas.layouts.len()).map(|layout| document.add_vertices(lightmap, layout)).collect();
     for (number, instance) in lightmap.scene.instances.iter().enumerate() {
         let primitives = &meshes[lightmap.atlas.instances[number].layout];
@@ -53,7 +53,7 @@ fn matrix(placement: glam::DAffine3) -> [f64; 16] {
 }
 
 /// Triangles of one material on one sheet.
-struct Primitive {
+struct ModelPrimitive {
     material: MaterialId,
     sheet: usize,
     positions: usize,
@@ -61,7 +61,7 @@ struct Primitive {
 }
 
 #[derive(Default)]
-struct Document {
+struct ModelDocument {
     vertices: Vec<u8>,
     accessors: Vec<Value>,
     views: Vec<Value>,
@@ -70,9 +70,9 @@ struct Document {
     materials: Vec<Value>,
 }
 
-impl Document {
+impl ModelDocument {
     /// The triangles of a layout.
-    fn add_vertices(&mut self, lightmap: &Lightmap, layout: usize) -> Vec<Primitive> {
+    fn add_vertices(&mut self, lightmap: &Lightmap, layout: usize) -> Vec<ModelPrimitive> {
         let layout = &lightmap.atlas.layouts[layout];
         let mut groups: BTreeMap<(MaterialId, usize), Vec<(Vec3, Vec2)>> = BTreeMap::new();
         for ((chart, grid), spot) in layout.charts.iter().zip(&layout.grids).zip(&layout.spots) {
@@ -86,7 +86,7 @@ impl Document {
         }
         let primitive = |((material, sheet), vertices): ((MaterialId, usize), Vec<(Vec3, Vec2)>)| {
             let [positions, coordinates] = self.add_accessors(&vertices);
-            Primitive { material, sheet, positions, coordinates }
+            ModelPrimitive { material, sheet, positions, coordinates }
         };
         groups.into_iter().map(primitive).collect()
     }
@@ -115,10 +115,10 @@ impl Document {
         &mut self,
         lightmap: &Lightmap,
         instance: usize,
-        primitives: &[Primitive],
-        look: &Look,
+        primitives: &[ModelPrimitive],
+        look: &ModelLook,
     ) -> usize {
-        let primitive = |p: &Primitive| {
+        let primitive = |p: &ModelPrimitive| {
             self.materials.push(material(lightmap, instance, p, look));
             json!({
                 "attributes": { "POSITION": p.positions, "TEXCOORD_0": p.coordinates, "TEXCOORD_1": p.coordinates },
@@ -145,10 +145,10 @@ impl Document {
         buffer
     }
 
-    fn json(mut self, origin: DVec3, bytes: usize, images: usize, look: &Look) -> Value {
+    fn json(mut self, origin: DVec3, bytes: usize, images: usize, look: &ModelLook) -> Value {
         let own = match look {
-            Look::Emissive(_) => "KHR_materials_emissive_strength",
-            Look::Unlit => "KHR_materials_unlit",
+            ModelLook::Emissive(_) => "KHR_materials_emissive_strength",
+            ModelLook::Unlit => "KHR_materials_unlit",
         };
         json!({
             "asset": { "version": "2.0", "generator": "Equilux" },
@@ -169,7 +169,7 @@ impl Document {
     }
 }
 
-fn material(lightmap: &Lightmap, instance: usize, primitive: &Primitive, look: &Look) -> Value {
+fn material(lightmap: &Lightmap, instance: usize, primitive: &ModelPrimitive, look: &ModelLook) -> Value {
     let rectangle = &rectangles(lightmap, instance)[primitive.sheet];
     let texture = json!({
         "index": rectangle.image, "texCoord": 1,
@@ -177,7 +177,7 @@ fn material(lightmap: &Lightmap, instance: usize, primitive: &Primitive, look: &
     });
     let source = &lightmap.materials_of(instance)[primitive.material.index()];
     match look {
-        Look::Emissive(peaks) => json!({
+        ModelLook::Emissive(peaks) => json!({
             "name": source.name,
             "pbrMetallicRoughness": {
                 "baseColorFactor": opaque(source.reflectance), "metallicFactor": 0.0, "roughnessFactor": 1.0,
@@ -188,7 +188,7 @@ fn material(lightmap: &Lightmap, instance: usize, primitive: &Primitive, look: &
                 "KHR_materials_emissive_strength": { "emissiveStrength": peaks[&(instance, primitive.material)] / PI },
             },
         }),
-        Look::Unlit => json!({
+        ModelLook::Unlit => json!({
             "name": source.name,
             "pbrMetallicRoughness": { "baseColorTexture": texture, "metallicFactor": 0.0, "roughnessFactor": 1.0 },
             "extensions": { "KHR_materials_unlit": {} },

@@ -7,7 +7,7 @@
 
 use super::atlas::{Atlas, Tile};
 use super::contacts::{Contact, smooth_contacts};
-use super::least_squares::{Difference, correction};
+use super::least_squares::{DifferenceRow, correction};
 use super::side::SurfaceSide;
 use super::texels::bilinear;
 use equilux_formats::{Instance, Rgb};
@@ -61,7 +61,12 @@ fn beside(tile: &Tile, texel: usize) -> impl Iterator<Item = usize> + use<> {
 }
 
 /// The differences of lookups that must vanish, for all seams of the scene.
-fn differences(atlas: &Atlas, instances: &[Instance], tiles: &[Tile], starts: &[usize]) -> Vec<Difference> {
+fn differences(
+    atlas: &Atlas,
+    instances: &[Instance],
+    tiles: &[Tile],
+    starts: &[usize],
+) -> Vec<DifferenceRow> {
     let (mut sides, mut whose) = (Vec::new(), Vec::new());
     for (number, tile) in tiles.iter().enumerate() {
         let placement = instances[tile.instance].placement;

@@ -29,12 +29,12 @@ pub struct Texel {
     /// Its column and row in the chart's rectangle.
     pub at: [u32; 2],
     /// The parts of the chart's sides inside its square.
-    pub footprints: Vec<Footprint>,
+    pub footprints: Vec<TexelFootprint>,
 }
 
 /// The planar convex part of a side inside a texel's square.
 #[derive(Debug, Clone)]
-pub struct Footprint {
+pub struct TexelFootprint {
     /// Index of the patch in which it lies.
     pub patch: usize,
     /// Corners, counter-clockwise seen from the lit side, metres.
@@ -57,7 +57,7 @@ impl Texels {
     /// `instance`.
     pub fn new(chart: &Chart, grid: &Grid, rows: Range<u32>, instance: usize, placement: DAffine3) -> Self {
         let patches: Vec<Patch> = grid.patches().copied().collect();
-        let mut texels: BTreeMap<[u32; 2], Vec<Footprint>> = BTreeMap::new();
+        let mut texels: BTreeMap<[u32; 2], Vec<TexelFootprint>> = BTreeMap::new();
         let determinant = placement.matrix3.determinant();
         let grows = determinant.abs().cbrt().powi(2);
         for (side, &patch) in chart.sides.iter().zip(&chart.planes) {
@@ -82,11 +82,18 @@ impl Texels {
                 if determinant < 0.0 {
                     corners.reverse();
                 }
-                texels.entry([row, column]).or_default().push(Footprint { patch, corners, normal, area });
+                texels.entry([row, column]).or_default().push(TexelFootprint {
+                    patch,
+                    corners,
+                    normal,
+                    area,
+                });
             });
         }
-        let texel =
-            |([row, column], footprints): ([u32; 2], Vec<Footprint>)| Texel { at: [column, row], footprints };
+        let texel = |([row, column], footprints): ([u32; 2], Vec<TexelFootprint>)| Texel {
+            at: [column, row],
+            footprints,
+        };
         Self {
             instance,
             material: chart.material,
@@ -104,12 +111,12 @@ fn area(polygon: &[DVec3]) -> f64 {
 
 /// Distance within which a point lies on a line between texels, in texels: rounding beyond a line creates no
 /// footprint.
-const ON_LINE: f64 = 1e-9;
+const ON_LINE_TOLERANCE: f64 = 1e-9;
 
 /// The distance of a coordinate beyond a line between texels.
 fn beyond(coordinate: f64, line: f64) -> f64 {
     let beyond = coordinate - line;
-    if beyond.abs() <= ON_LINE { 0.0 } else { beyond }
+    if beyond.abs() <= ON_LINE_TOLERANCE { 0.0 } else { beyond }
 }
 
 /// The part of a polygon in these rows, including the line before them.
@@ -129,7 +136,7 @@ fn into_squares(polygon: Polygon, mut emit: impl FnMut([u32; 2], Polygon)) {
 fn slices(polygon: Polygon, axis: usize, mut emit: impl FnMut(u32, Polygon)) {
     let reach = |pick: fn(f64, f64) -> f64, start: f64| polygon.iter().map(|p| p[axis]).fold(start, pick);
     let (low, high) = (reach(f64::min, f64::INFINITY), reach(f64::max, f64::NEG_INFINITY));
-    let (first, end) = ((low + ON_LINE).floor(), (high - ON_LINE).ceil());
+    let (first, end) = ((low + ON_LINE_TOLERANCE).floor(), (high - ON_LINE_TOLERANCE).ceil());
     let mut rest = Some(polygon);
     let mut line = first;
     while let Some(whole) = rest.take() {

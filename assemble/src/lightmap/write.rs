@@ -6,7 +6,7 @@
 
 use super::images::{directions_exr, exr, half_scale, peaks, png, relative_png, shown_png};
 use super::listing::{File, listing};
-use super::model::{Look, model};
+use super::model::{ModelLook, model};
 use super::names::{direction_name, name};
 use super::{Lightmap, Units};
 use crate::output_file::{self, WrittenFiles};
@@ -52,8 +52,8 @@ fn files(lightmap: &Lightmap, units: Units, scale: f64, exposure: Exposure) -> i
     let shown: Vec<Vec<u8>> =
         numbers().map(|n| shown_png(lightmap, n, exposure)).collect::<io::Result<_>>()?;
     let others = [
-        File::new("lightmapped.glb", model(lightmap, &relative, &Look::Emissive(&peaks))?),
-        File::new("lightmapped.unlit.glb", model(lightmap, &shown, &Look::Unlit)?),
+        File::new("lightmapped.glb", model(lightmap, &relative, &ModelLook::Emissive(&peaks))?),
+        File::new("lightmapped.unlit.glb", model(lightmap, &shown, &ModelLook::Unlit)?),
         File::new("lightmaps.json", list),
     ];
     let directions = |number: usize, of: &Vec<Vec<[f64; 3]>>| {

@@ -1,8 +1,8 @@
 //! The published state of a run. Input: the results of the run as they are computed, through [`Observer`]. Output:
-//! snapshots and news for viewers. The run never waits for viewers: it copies its light at most once every [`PACE`],
+//! snapshots and news for viewers. The run never waits for viewers: it copies its light at most once every [`MIN_PUBLISH_INTERVAL`],
 //! and the server's thread does the rest.
 
-use super::field::{Field, RoundLight, Snapshot, Values, computed, row_sums};
+use super::field::{Field, RoundLight, Snapshot, SnapshotValues, computed, row_sums};
 use super::history::{History, Point};
 use super::model::Model;
 use super::status::{Phase, Status};
@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
 /// Minimum time between published lights.
-pub const PACE: Duration = Duration::from_millis(100);
+pub const MIN_PUBLISH_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The published state of a run.
 #[derive(Debug)]
@@ -117,12 +117,12 @@ impl Board {
         let state = self.state();
         let model = state.model.as_ref()?;
         let numbers = |numbers: &Arc<Vec<f32>>| {
-            state.began.map(|_| (state.status.run, Values::Numbers(Arc::clone(numbers))))
+            state.began.map(|_| (state.status.run, SnapshotValues::Numbers(Arc::clone(numbers))))
         };
         let (number, values) = match field {
             Field::RowSums => numbers(&state.row_sums)?,
             Field::Computed => numbers(&state.computed)?,
-            _ => (state.light_number, Values::Light(state.light.clone()?, field)),
+            _ => (state.light_number, SnapshotValues::Light(state.light.clone()?, field)),
         };
         (number > than).then_some(Snapshot { run: model.run, number, values })
     }
@@ -154,7 +154,7 @@ impl BoardState {
     }
 
     fn is_due(&self) -> bool {
-        self.published.is_none_or(|last| last.elapsed() >= PACE)
+        self.published.is_none_or(|last| last.elapsed() >= MIN_PUBLISH_INTERVAL)
     }
 }
 

@@ -1,4 +1,4 @@
-// Error bound and residual against seconds, both axes logarithmic. In go points of rounds; out comes a drawing.
+// Error bound and residual against seconds, both axes logarithmic. Input: points of rounds. Output: a drawing.
 
 const MARGIN = { left: 40, right: 8, top: 6, bottom: 18 };
 
@@ -9,7 +9,7 @@ export class Curve {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  // Points in order, and the newest, which may not be among them.
+  // `points` in order, and the newest point, which may not be among them.
   set(points, now) {
     this.points = now && points.at(-1)?.seconds !== now.seconds ? [...points, now] : points;
     this.draw();
@@ -29,7 +29,7 @@ export class Curve {
     const times = this.points.map((point) => point.seconds).filter((seconds) => seconds > 0);
     if (!values.length || !times.length) {
       pen.fillStyle = colour("--quiet");
-      pen.fillText("Drawn once rounds arrive.", MARGIN.left, height / 2);
+      pen.fillText("Waiting for the first round.", MARGIN.left, height / 2);
       return;
     }
     const x = axis(times, MARGIN.left, width - MARGIN.right);
@@ -54,7 +54,7 @@ export class Curve {
     }
   }
 
-  // Groups of parts have curves of their own.
+  // Each group of parts has its own curve.
   path(pen, x, y, key) {
     let group;
     pen.beginPath();
@@ -74,7 +74,7 @@ export class Curve {
   }
 }
 
-// An axis over whole or half powers of ten, with at most six ticks.
+// An axis over integer or half-integer powers of ten, with at most six ticks.
 function axis(values, start, end) {
   const logs = values.map(Math.log10);
   const [least, most] = logs.reduce(([low, high], log) => [Math.min(low, log), Math.max(high, log)], [Infinity, -Infinity]);

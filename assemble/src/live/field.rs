@@ -47,11 +47,11 @@ pub struct Snapshot {
     /// Version; later snapshots have higher numbers.
     pub number: u32,
     /// Its values.
-    pub values: Values,
+    pub values: SnapshotValues,
 }
 
 /// The values of a snapshot.
-pub enum Values {
+pub enum SnapshotValues {
     /// Light.
     Light(RoundLight, Field),
     /// One number for each element.
@@ -64,8 +64,8 @@ impl Snapshot {
     /// light.
     pub fn bytes(&self) -> Vec<u8> {
         let (round, (exposure, stride, numbers)) = match &self.values {
-            Values::Numbers(numbers) => (0, (0.0, 1, numbers.to_vec())),
-            Values::Light(light, field) => (light.round as u32, light.shown(*field)),
+            SnapshotValues::Numbers(numbers) => (0, (0.0, 1, numbers.to_vec())),
+            SnapshotValues::Light(light, field) => (light.round as u32, light.shown(*field)),
         };
         let mut bytes = Vec::with_capacity(20 + 4 * numbers.len());
         [self.run, self.number, round].iter().for_each(|n| bytes.extend(n.to_le_bytes()));

@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 /// Rays that sample the visible elements for the exposure; the exposure of pictures uses the rays of all pixels.
 const RAYS: UVec2 = uvec2(96, 72);
 
-/// PlacedParts elements.
+/// The placed elements of a run.
 #[derive(Debug)]
 pub struct Model {
     /// The run that placed them.

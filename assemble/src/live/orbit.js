@@ -1,16 +1,16 @@
-// A camera that turns around a point. In go pointer, wheel and keys on a canvas; out comes the camera's place.
+// A camera that orbits a point. Input: pointer, wheel and keys on a canvas. Output: the camera's position.
 
 import { Spherical, Vector3 } from "./three.module.min.js";
 
-const TURN = 0.006; // radians a pixel
-const STEP = 0.08; // radians a key
-const NEARER = 1.0015; // a pixel of the wheel
+const TURN = 0.006; // radians for each pixel
+const STEP = 0.08; // radians for each key press
+const NEARER = 1.0015; // zoom factor for each pixel of the wheel
 
 export class Orbit {
   // `changed` is called after every move.
   constructor(canvas, camera, changed) {
     Object.assign(this, { canvas, camera, changed, target: new Vector3(), place: new Spherical() });
-    this.home = null; // where the key leads
+    this.home = null; // the position for the Home key
     this.pointers = new Map();
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -28,14 +28,14 @@ export class Orbit {
     canvas.addEventListener("keydown", (event) => this.typed(event));
   }
 
-  // Stand at `eye` and turn around `target`, both arrays.
+  // Place the camera at `eye`, orbiting `target`; both are arrays.
   stand(eye, target) {
     this.target.fromArray(target);
     this.place.setFromVector3(new Vector3(...eye).sub(this.target));
     this.move();
   }
 
-  // All coordinates have moved by this, an array.
+  // Shift by the change of the coordinate origin, an array.
   shift(by) {
     this.target.add(new Vector3(...by));
     this.move();
@@ -81,7 +81,7 @@ export class Orbit {
     this.move();
   }
 
-  // Move with the scene under the pointer, pixels.
+  // Pan so that the scene follows the pointer, pixels.
   pan(x, y) {
     const metres = 2 * this.place.radius * Math.tan((this.camera.fov * Math.PI) / 360) / this.canvas.clientHeight;
     const [right, up] = [0, 1].map((axis) => new Vector3().setFromMatrixColumn(this.camera.matrix, axis));

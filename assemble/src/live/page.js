@@ -1,4 +1,4 @@
-// The page: in go news and fields from the program, and what a person chooses; out comes what is shown, and the wish to stop.
+// The page. Input: news and fields from the program, and the choices of the user. Output: the display, and requests to stop.
 
 import { COLOURS, LIGHT, RAMP, Stage } from "./scene.js";
 import { Curve } from "./curve.js";
@@ -8,7 +8,7 @@ const at = (id) => document.getElementById(id);
 const stage = new Stage(at("scene"));
 const curve = new Curve(at("curve"));
 
-// What each view shows of the program, and how.
+// The field of each view, and its display.
 const VIEWS = {
   radiosity: { field: "radiosity", kind: LIGHT },
   irradiance: { field: "irradiance", kind: LIGHT },
@@ -17,7 +17,7 @@ const VIEWS = {
   "row-sums": { field: "row-sums", kind: RAMP, range: [-9, 0], ramp: ["#20344f", "#2c6f85", "#58a37a", "#d3bd59", "#f7ecc8"] },
   computed: { field: "computed", kind: RAMP, range: [-3, 0], ramp: ["#6d4a2a", "#96632f", "#c07f3a", "#e29f50", "#ffd08a"] },
 };
-// Of elements that a view says nothing about.
+// Colour of elements without a value in a view.
 const NOTHING = "#4a5361";
 const MOST_ROWS = 300;
 
@@ -27,8 +27,8 @@ let now = null;
 let steps = [];
 let view = "radiosity";
 let automatic = 1; // the program's exposure
-let held = null; // the one that a person wants kept
-let change = new AbortController(); // ends a request for what is not wanted any more
+let held = null; // the exposure that the user keeps
+let change = new AbortController(); // cancels a request that is no longer needed
 const wake = new EventTarget();
 
 // News
@@ -43,7 +43,7 @@ source.onmessage = (event) => {
   }
   points.push(...news.points);
   [now, steps] = [news.now, news.steps];
-  told(news);
+  show(news);
 };
 source.onerror = () => {
   at("lost").hidden = false;
@@ -56,11 +56,11 @@ const PHASES = {
   coupling: (what) => what || "form factors between parts",
   exchange: () => (status.stopping ? "ending after this round" : "exchanging light"),
   writing: (what) => (what && what !== "exchange" ? `writing: ${what}` : "writing outputs"),
-  done: () => (status.converged ? "done: the error asked for is proved" : "done: ended before the error asked for was proved"),
+  done: () => (status.converged ? "done: the required error is proved" : "done: ended before the required error was proved"),
   failed: () => "failed",
 };
 
-function told({ status: isNew, stage: [what, done, total] }) {
+function show({ status: isNew, stage: [what, done, total] }) {
   const over = status.phase === "done" || status.phase === "failed";
   at("phase").textContent = PHASES[status.phase](what) + (over && status.watched ? "; waiting for a file to change" : "");
   const bar = at("progress");
@@ -80,8 +80,8 @@ function told({ status: isNew, stage: [what, done, total] }) {
   at("close").hidden = !over;
   at("close").textContent = status.watched ? "Stop watching" : "Close";
   at("hint").textContent = over
-    ? "Ends the program; what it has written stays."
-    : "Ends after the round; all outputs are written.";
+    ? "Ends the program; written files remain."
+    : "Ends after the current round; all outputs are written.";
   at("error").hidden = !status.error;
   at("error").textContent = status.error ?? "";
   showParts();
@@ -114,7 +114,7 @@ function showParts() {
     name.append(swatch, instance.name);
     name.title = `part ${part.name}, ${part.elements} elements`;
     const own = made("td", instance.inside ? `${WORDS[instance.inside]}, cut` : WORDS[part.own], instance.inside ?? part.own);
-    own.title = instance.inside ? "something stands inside this part" : part.reason;
+    own.title = instance.inside ? "another part is inside this part" : part.reason;
     const coupling = made("td", WORDS[instance.coupling], instance.coupling);
     coupling.title = instance.reason;
     row.append(name, own, coupling);
@@ -147,7 +147,7 @@ function showSteps() {
 
 // Colours
 
-// Far apart for neighbouring numbers: steps of the golden angle around the hues.
+// Distinct colours for consecutive numbers: steps of the golden angle around the hues.
 function colourOf(part) {
   return new Color().setHSL((0.58 + 0.381966 * part) % 1, 0.42, 0.5 + 0.09 * ((part % 3) - 1));
 }
@@ -165,7 +165,7 @@ function showColours(of) {
   stage.show(values, 3, COLOURS);
 }
 
-// Fields: one is asked for when the last has been drawn, so a slow page skips rounds.
+// Fields: the next is requested after the last has been drawn, so a slow page skips rounds.
 
 const nextFrame = () => new Promise((done) => requestAnimationFrame(done));
 const news = () => new Promise((done) => wake.addEventListener("news", done, { once: true }));
@@ -196,7 +196,7 @@ async function follow() {
       else if (response.status !== 204) await news();
       await nextFrame();
     } catch (error) {
-      // Another view was asked for, or the program has ended: the news will tell.
+      // Another view was chosen, or the program has ended, as the news will report.
       if (error.name !== "AbortError") await Promise.race([news(), new Promise((done) => setTimeout(done, 1000))]);
     }
   }
@@ -206,7 +206,7 @@ async function load() {
   const response = await fetch("model");
   if (response.status !== 200) return;
   stage.load(await response.arrayBuffer());
-  // Until there is light.
+  // Until light is available.
   showColours(() => [0.2, 0.2, 0.2]);
 }
 
@@ -221,7 +221,7 @@ function begin() {
   showRound();
 }
 
-// Show a snapshot, unless it is of another run's model; returns its number.
+// Show a snapshot, unless it belongs to the model of another run. Returns its version.
 function received(buffer, kind, before) {
   const head = new DataView(buffer);
   const [run, number, round] = [0, 4, 8].map((offset) => head.getUint32(offset, true));
@@ -266,11 +266,11 @@ function showLegend() {
     legend.append(bar, ends);
     say(view === "computed" ? "none: all reused" : "exactly 1", NOTHING);
   }
-  if (view === "irradiance" && status.phase === "exchange") say("surfaces that reflect nothing: known in the end", "#2a2b33");
-  if (view === "parts") say("One colour a part; instances of a part share it");
+  if (view === "irradiance" && status.phase === "exchange") say("black surfaces: known at the end", "#2a2b33");
+  if (view === "parts") say("One colour for each part, shared by its instances");
 }
 
-// What a person chooses
+// Choices of the user
 
 function expose() {
   stage.exposure = (held ?? automatic) * 2 ** at("stops").value;
@@ -307,6 +307,6 @@ at("stop").addEventListener("click", () => {
 });
 at("close").addEventListener("click", () => fetch("close", { method: "POST" }));
 
-// A browser may bring back the choice of before.
+// A browser may restore an earlier choice.
 view = document.querySelector("input[name=view]:checked").value;
 follow();

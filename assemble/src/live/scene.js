@@ -1,4 +1,4 @@
-// The scene as triangles, each element in one colour. In go the model and values an element; out comes the picture.
+// The scene as triangles, each element in one colour. Input: the model and the values of elements. Output: the picture.
 
 import {
   BufferAttribute, BufferGeometry, Color, DataTexture, FloatType, GLSL3, Mesh, PerspectiveCamera, RedFormat, Scene,
@@ -6,11 +6,11 @@ import {
 } from "./three.module.min.js";
 import { Orbit } from "./orbit.js";
 
-// Behind everything, as in the pictures that are written: 0.02 in linear light.
+// Background, as in the written pictures: 0.02 in linear light.
 const BACKGROUND = new Color(0.02, 0.02, 0.02);
-const WIDTH = 2048; // of the texture that holds the values
+const WIDTH = 2048; // width of the texture with the values
 
-// What values mean: light, linear RGB, or a share on a ramp.
+// Kinds of values: light in linear RGB, or a position on a colour ramp.
 export const LIGHT = 0, COLOURS = 1, RAMP = 2;
 
 const VERTEX = `
@@ -29,7 +29,7 @@ float value(int k) {
   return texelFetch(values, ivec2(i % ${WIDTH}, i / ${WIDTH}), 0).r;
 }
 
-// The tone curve of the pictures: straight up to 0.8, then towards 1.
+// The tone curve of the pictures: linear up to 0.8, then approaching 1.
 vec3 tone(vec3 x) {
   return mix(max(x, 0.0), 1.0 - 0.2 * exp(-(x - 0.8) / 0.2), greaterThan(x, vec3(0.8)));
 }
@@ -46,7 +46,7 @@ void main() {
     colour = onRamp(value(0));
   } else {
     vec3 v = vec3(value(0), value(1), value(2));
-    // What is not known yet is the least number there is.
+    // Unknown values are stored as the least f32.
     bool known = all(greaterThan(v, vec3(-1e37)));
     colour = kind == ${COLOURS} ? v : known ? tone(exposure * v / 3.14159265) : nothing;
   }
@@ -65,12 +65,12 @@ out vec4 pixel;
 
 void main() {
   vec3 normal = normalize(cross(dFdx(place), dFdy(place)));
-  // Light is shown as it is; colours that only tell something apart are shaded, so that shapes are seen.
+  // Light is shown unshaded; colours that only distinguish elements are shaded to make shapes visible.
   vec3 shown = kind == ${LIGHT} ? colour : colour * (0.45 + 0.55 * abs(normal.z));
   vec3 width = fwidth(edge);
   vec3 inside = clamp(edge / max(1.3 * width, vec3(1e-6)), 0.0, 1.0);
   float line = 1.0 - min(inside.x, min(inside.y, inside.z));
-  // Where elements are about as small as pixels, lines would be all there is.
+  // Where elements are about as small as pixels, lines would cover everything.
   line *= lines * clamp(1.6 - 3.0 * max(width.x, max(width.y, width.z)), 0.0, 1.0);
   vec3 drawn = dot(shown, vec3(0.3, 0.6, 0.1)) > 0.12 ? vec3(0.01) : vec3(0.25);
   shown = mix(shown, drawn, line);
@@ -96,7 +96,7 @@ export class Stage {
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
-  // The bytes of `model`. The camera stays where it is, unless there was nothing before.
+  // Read the bytes of `model`. The camera keeps its position, unless this is the first model.
   load(buffer) {
     const length = new DataView(buffer).getUint32(0, true);
     const head = JSON.parse(new TextDecoder().decode(new Uint8Array(buffer, 4, length)));
@@ -117,7 +117,7 @@ export class Stage {
     this.resize();
   }
 
-  // Show these values, so many an element.
+  // Show these values, `stride` for each element.
   show(values, stride, kind) {
     const uniforms = this.material.uniforms;
     let texture = uniforms.values.value;
@@ -135,7 +135,7 @@ export class Stage {
     this.draw();
   }
 
-  // Colours of a ramp from `from` to `to`, powers of ten, and of what is nothing on it; sRGB.
+  // Colours of a ramp between the powers of ten `from` and `to`, and the colour of zero; sRGB.
   setRamp(colours, nothing, [from, to]) {
     const uniforms = this.material.uniforms;
     uniforms.ramp.value.forEach((colour, i) => colour.set(colours[i]));
@@ -160,14 +160,14 @@ export class Stage {
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     const { fov = 0.7, aspect = 4 / 3 } = this.head ?? {};
-    // On a canvas that is narrower than the picture all that is in the picture is still seen.
+    // A canvas that is narrower than the picture still shows all of the picture.
     const half = Math.tan(fov / 2) * Math.max(1, aspect / this.camera.aspect);
     this.camera.fov = (360 / Math.PI) * Math.atan(half);
     this.camera.updateProjectionMatrix();
     this.draw();
   }
 
-  // Draw before the next frame, once.
+  // Draw once before the next frame.
   draw() {
     if (this.waiting) return;
     this.waiting = true;
@@ -178,7 +178,7 @@ export class Stage {
   }
 }
 
-// Two triangles an element, or one. `edges` are their barycentric coordinates, with 1 for a side that is no edge.
+// One or two triangles for each element. `edges` are their barycentric coordinates, with 1 for a side that is not an edge.
 function triangles(corners, elements) {
   const most = 6 * elements;
   const [position, element, edges] = [new Float32Array(3 * most), new Uint32Array(most), new Uint8Array(4 * most)];

@@ -3,7 +3,7 @@
 //! Each viewer has its own connection and fetches a field after it has shown the previous one: slow viewers skip
 //! rounds, and nothing waits for them.
 
-use super::board::{Board, PACE};
+use super::board::{Board, MIN_PUBLISH_INTERVAL};
 use super::field::Field;
 use super::guard::Guard;
 use super::history::Point;
@@ -187,7 +187,7 @@ async fn events(State(site): State<Site>) -> Sse<impl Stream<Item = Result<Event
     let stream = unfold((site, ViewerState::default(), viewer), |(site, mut sent, viewer)| async move {
         loop {
             if sent.status.is_some() {
-                sleep(PACE).await;
+                sleep(MIN_PUBLISH_INTERVAL).await;
             }
             if let Some(news) = news(&site, &mut sent) {
                 let event = Event::default().json_data(news).expect("news are plain data");

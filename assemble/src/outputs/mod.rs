@@ -13,7 +13,7 @@ use crate::output_file::WrittenFiles;
 use crate::outputs::scene_light::SceneLight;
 use crate::picture::camera::View;
 use crate::picture::canvas::Canvas;
-use crate::picture::difference::Reference;
+use crate::picture::difference::ReferenceLight;
 use crate::picture::exposure::Exposure;
 use crate::picture::shot;
 use crate::picture::{shade, strip, wireframe, write_png};
@@ -57,7 +57,7 @@ pub struct RunResults<'a> {
     /// The points at which to compute light, if requested.
     pub places: Option<&'a [Place]>,
     /// The reference light for a picture, if requested.
-    pub against: Option<&'a Reference>,
+    pub against: Option<&'a ReferenceLight>,
 }
 
 /// The written outputs.

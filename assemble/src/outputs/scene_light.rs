@@ -5,7 +5,7 @@ use equilux_bake::world::World;
 use equilux_formats::Rgb;
 use glam::DVec3;
 
-/// PlacedParts elements, the light on them, and the names to tell about them. Per-element slices follow `world.elements`.
+/// Placed elements, the light on them, and their names. Per-element slices follow `world.elements`.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneLight<'a> {
     /// The placed elements, in scene coordinates, metres.

@@ -21,7 +21,7 @@ const MAX_ASPECT: f64 = 4.0;
 /// Vertical field of view of a framing camera, radians.
 const FRAMING_FOV: f64 = 40.0 / 180.0 * PI;
 /// Share of the picture that a framed scene fills.
-const FILLED: f64 = 0.94;
+const FILLED_SHARE: f64 = 0.94;
 /// Maximum number of elements that are sampled to rate a direction.
 const MAX_SAMPLED: usize = 2000;
 
@@ -119,7 +119,7 @@ impl View {
     fn fitted(back: DVec3, points: &[DVec3]) -> Self {
         let right = DVec3::Y.cross(back).normalize();
         let up = back.cross(right);
-        let slope = (FRAMING_FOV / 2.0).tan() * FILLED;
+        let slope = (FRAMING_FOV / 2.0).tan() * FILLED_SHARE;
         let (x, far_x) = fit(points.iter().map(|p| (p.dot(right), p.dot(back))), slope * ASPECT);
         let (y, far_y) = fit(points.iter().map(|p| (p.dot(up), p.dot(back))), slope);
         Self {

@@ -22,13 +22,13 @@ const SATURATED_SHARE: f64 = 0.05;
 
 /// Reference light at points.
 #[derive(Debug)]
-pub struct Reference {
+pub struct ReferenceLight {
     places: Vec<Place>,
     /// W/m².
     irradiance: Vec<Rgb>,
 }
 
-impl Reference {
+impl ReferenceLight {
     /// Read a table with the columns of [`crate::gather::points::read`], and irradiance in `Hc_r`, `Hc_g`, `Hc_b` or
     /// `H_r`, `H_g`, `H_b`, W/m². Fails if it cannot be read or lacks these columns.
     pub fn read(file: &Path, origin: DVec3) -> Result<Self> {
@@ -52,7 +52,7 @@ pub struct Difference<'a> {
 
 impl<'a> Difference<'a> {
     /// Compare the light of elements with a reference.
-    pub fn new(reference: &Reference, elements: &'a [Element], light: &InterpolatedIrradiance) -> Self {
+    pub fn new(reference: &ReferenceLight, elements: &'a [Element], light: &InterpolatedIrradiance) -> Self {
         let size = reference.places.iter().map(|p| p.point.abs().max_element()).fold(0.0, f64::max);
         let theirs: Vec<f64> = reference.irradiance.iter().map(|h| h.luminance()).collect();
         let mean = theirs.iter().sum::<f64>() / theirs.len() as f64;

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// The end of the straight part of the tone curve.
 const KNEE: f64 = 0.8;
 /// The share of the picture that stays below the knee.
-const BELOW_KNEE: f64 = 0.95;
+const BELOW_KNEE_SHARE: f64 = 0.95;
 
 /// The factor k on radiance, (W/(m²·sr))⁻¹.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +41,7 @@ impl Exposure {
 
 /// The 95th percentile of `lights`.
 fn bright(mut lights: Vec<f64>) -> Option<f64> {
-    let rank = (lights.len().checked_sub(1)? as f64 * BELOW_KNEE) as usize;
+    let rank = (lights.len().checked_sub(1)? as f64 * BELOW_KNEE_SHARE) as usize;
     Some(*lights.select_nth_unstable_by(rank, f64::total_cmp).1)
 }
 

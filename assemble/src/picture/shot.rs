@@ -4,7 +4,7 @@
 use crate::output_file::WrittenFiles;
 use crate::picture::camera::View;
 use crate::picture::canvas::Canvas;
-use crate::picture::difference::{Difference, Reference};
+use crate::picture::difference::{Difference, ReferenceLight};
 use crate::picture::exposure::Exposure;
 use crate::picture::interpolation::InterpolatedIrradiance;
 use crate::picture::smooth::corner_irradiance;
@@ -78,7 +78,7 @@ pub enum Shading {
 /// written.
 pub fn draw(
     shot: &Shot,
-    against: Option<&Reference>,
+    against: Option<&ReferenceLight>,
     scene: &Scene,
     solved: &Solved,
     folder: &Path,

@@ -82,7 +82,8 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
         unreachable!("a default size is a length")
     };
     let places = spread(&prepared);
-    let trials = Trials { scene: &scene, environment: &environment, store: &store, places: &places, monitor };
+    let trials =
+        TrialInputs { scene: &scene, environment: &environment, store: &store, places: &places, monitor };
     let mut advice = Advice {
         target,
         met: false,
@@ -156,7 +157,7 @@ fn spread(prepared: &Prepared) -> Vec<Place> {
 }
 
 /// The inputs that all trials share.
-struct Trials<'a> {
+struct TrialInputs<'a> {
     scene: &'a Scene,
     environment: &'a Environment,
     store: &'a Store,
@@ -164,7 +165,7 @@ struct Trials<'a> {
     monitor: &'a Monitor,
 }
 
-impl Trials<'_> {
+impl TrialInputs<'_> {
     /// Solve the scene with `settings`, and gather light at the points.
     fn sample(&self, settings: &SolveSettings) -> Result<SampledLight> {
         let Self { scene, environment, store, places, monitor } = *self;

@@ -4,7 +4,7 @@ use crate::gather::points::{self, Place};
 use crate::gather::sky::Sky;
 use crate::outputs::check_writable;
 use crate::outputs::requests::OutputRequests;
-use crate::picture::difference::Reference;
+use crate::picture::difference::ReferenceLight;
 use crate::solve::settings::SolveSettings;
 use equilux_bake::oven::stamp;
 use equilux_formats::{Result, Scene};
@@ -47,8 +47,8 @@ impl Job {
 
     /// The points at which to compute light and the reference light, if requested, in scene coordinates. `origin`:
     /// the origin of the scene in the tables' coordinates, metres. Fails if a table cannot be read.
-    pub fn tables(&self, origin: DVec3) -> Result<(Option<Vec<Place>>, Option<Reference>)> {
+    pub fn tables(&self, origin: DVec3) -> Result<(Option<Vec<Place>>, Option<ReferenceLight>)> {
         let places = self.outputs.points.as_deref().map(|file| points::read(file, origin)).transpose()?;
-        Ok((places, self.outputs.reference().map(|file| Reference::read(file, origin)).transpose()?))
+        Ok((places, self.outputs.reference().map(|file| ReferenceLight::read(file, origin)).transpose()?))
     }
 }

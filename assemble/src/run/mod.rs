@@ -20,6 +20,7 @@ use crate::report::light_notes::light_notes;
 use crate::report::process::{cpu_seconds, peak_rss};
 use crate::report::summary::{HIDDEN_SHELLS, ReportSources, summary};
 use crate::report::unlit::unlit_notes;
+use crate::solve::settings::SolveSettings;
 use crate::solve::solve_prepared;
 use crate::verify::{Classic, classic};
 use equilux_bake::gltf_import::import_scene;
@@ -93,15 +94,9 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     (report.seconds.solve, report.seconds.solve_cpu) = (solve, solve_cpu);
     report.seconds.total = start.elapsed().as_secs_f64();
     let last = dropped_note(evicted).into_iter().chain(unverified_note(job, classic.as_ref())).collect();
-    let lights = notes_on_lights(job, &scene, equation, &systems);
+    let lights = notes_on_lights(settings, &scene, equation, &systems);
     report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
-}
-
-fn notes_on_lights(job: &Job, scene: &Scene, equation: &Equation, systems: &[InstanceSystem]) -> Vec<String> {
-    let mut notes = light_notes(scene, job.settings.light_units, job.settings.sky.as_ref());
-    notes.extend(unlit_notes(scene, &equation.direct.unlit, &equation.placed, systems));
-    notes
 }
 
 /// The scene, and its parts divided into elements. Fails where the job is not possible.
@@ -112,6 +107,18 @@ fn opened(job: &Job) -> Result<(Scene, Prepared)> {
     scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
     job.check(&scene)?;
     Ok((scene, prepared))
+}
+
+/// Notes on the scene's lights, and on lamps that light nothing.
+fn notes_on_lights(
+    settings: &SolveSettings,
+    scene: &Scene,
+    equation: &Equation,
+    systems: &[InstanceSystem],
+) -> Vec<String> {
+    let mut notes = light_notes(scene, settings.light_units, settings.sky.as_ref());
+    notes.extend(unlit_notes(scene, &equation.direct.unlit, &equation.placed, systems));
+    notes
 }
 
 fn unverified_note(job: &Job, classic: Option<&Classic>) -> Option<String> {

@@ -17,7 +17,7 @@ const MIN_BACK_RATIO: usize = 4;
 const MAX_NAMED: usize = 3;
 
 /// The surfaces of one material in an instance: all of them, or those in one plane that face the same way.
-type Surfaces = (usize, MaterialId, Option<(u32, bool)>);
+type SurfaceGroup = (usize, MaterialId, Option<(u32, bool)>);
 
 /// How often surfaces are seen from each side.
 #[derive(Default)]
@@ -34,7 +34,7 @@ pub(super) fn notes(placed: &PlacedParts, rays: &RaySample) -> Vec<String> {
     let least = MIN_BACK_SHARE * rays.hits.len() as f64;
     let is_wrong =
         |seen: &Sightings| seen.backs as f64 >= least && seen.backs >= MIN_BACK_RATIO * seen.fronts;
-    let mut wrong: Vec<(&Surfaces, &Sightings)> = sightings
+    let mut wrong: Vec<(&SurfaceGroup, &Sightings)> = sightings
         .iter()
         .filter(|((instance, material, plane), seen)| {
             // Where a whole mesh is inside out, its planes are not reported separately.
@@ -50,8 +50,8 @@ pub(super) fn notes(placed: &PlacedParts, rays: &RaySample) -> Vec<String> {
     notes
 }
 
-fn sightings(placed: &PlacedParts, rays: &RaySample) -> BTreeMap<Surfaces, Sightings> {
-    let mut all: BTreeMap<Surfaces, Sightings> = BTreeMap::new();
+fn sightings(placed: &PlacedParts, rays: &RaySample) -> BTreeMap<SurfaceGroup, Sightings> {
+    let mut all: BTreeMap<SurfaceGroup, Sightings> = BTreeMap::new();
     for hit in rays.hits.iter().flatten() {
         let element = &placed.world.elements[hit.element];
         let instance = placed.world.instance_of_node(placed.world.node_of(hit.element));
@@ -70,7 +70,7 @@ fn plane(placed: &PlacedParts, element: &Element) -> (u32, bool) {
     (placed.world.plane_of(element.face), face.normal.dot(element.normal) > 0.0)
 }
 
-fn sentence(placed: &PlacedParts, rays: &RaySample, surfaces: &Surfaces, seen: &Sightings) -> String {
+fn sentence(placed: &PlacedParts, rays: &RaySample, surfaces: &SurfaceGroup, seen: &Sightings) -> String {
     let &(instance, material, plane) = surfaces;
     let material = &placed.part_of(instance).part.materials[material.index()].name;
     let what = match plane {
