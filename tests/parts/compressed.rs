@@ -6,10 +6,9 @@ use equilux_assemble::run::job::Job;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
-use equilux_tests::levels;
-use equilux_tests::rooms;
 use equilux_tests::shapes::{alone, coupling, fine};
 use equilux_tests::workshop::{Workshop, assembled};
+use equilux_tests::{levels, rooms};
 
 fn shipped(workshop: &Workshop, scene: &str, size: ElementSize, tolerance: f64) -> Job {
     let mut job = workshop.job(Division::Authored);

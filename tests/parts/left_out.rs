@@ -1,7 +1,6 @@
 //! What changes no radiosity is left out, told, and not missed.
 
-use equilux_assemble::exchange::settings::Goal;
-use equilux_assemble::exchange::settings::Method;
+use equilux_assemble::exchange::settings::{Goal, Method};
 use equilux_assemble::report::Report;
 use equilux_assemble::report::summary::{BLACK_ROWS, DARK_SOLVES, UNSEEN};
 use equilux_bake::oven::prepare::Division;

@@ -4,8 +4,7 @@
 use equilux_assemble::exchange::exchange;
 use equilux_assemble::exchange::listener::Unobserved;
 use equilux_assemble::exchange::outcome::Outcome;
-use equilux_assemble::exchange::settings::Goal;
-use equilux_assemble::exchange::settings::Method;
+use equilux_assemble::exchange::settings::{Goal, Method};
 use equilux_assemble::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::{LocalSystem, default_solver};
 use equilux_bake::monitor::Monitor;

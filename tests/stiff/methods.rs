@@ -3,8 +3,7 @@
 
 use equilux_assemble::exchange::exchange;
 use equilux_assemble::exchange::listener::Unobserved;
-use equilux_assemble::exchange::settings::Goal;
-use equilux_assemble::exchange::settings::Method;
+use equilux_assemble::exchange::settings::{Goal, Method};
 use equilux_bake::elements::bisect::bisect;
 use equilux_bake::elements::{ElementSize, optics, subdivide};
 use equilux_bake::monitor::Monitor;

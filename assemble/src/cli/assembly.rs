@@ -1,8 +1,7 @@
 //! Options for a scene and its assembly.
 
 use super::values;
-use crate::exchange::settings::Goal;
-use crate::exchange::settings::Method;
+use crate::exchange::settings::{Goal, Method};
 use crate::gather::sky::Sky;
 use crate::lightmap::{LightmapOptions, Units};
 use crate::outputs::requests::{OutputRequests, Pictures};

@@ -8,8 +8,7 @@ pub mod exact_rows;
 pub mod sample;
 
 use crate::exchange::outcome::Outcome;
-use crate::exchange::system::InstanceSystem;
-use crate::exchange::system::residual;
+use crate::exchange::system::{InstanceSystem, residual};
 use crate::placed_parts::PlacedParts;
 use crate::statistics::mean_over_area;
 use enclosure::{StoredFormFactors, is_compressed};

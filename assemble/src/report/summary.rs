@@ -3,8 +3,7 @@
 use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify};
 use crate::equation::Equation;
 use crate::equation::coupling::Coupled;
-use crate::exchange::outcome::Outcome;
-use crate::exchange::outcome::Round;
+use crate::exchange::outcome::{Outcome, Round};
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
 use crate::proof::{Proof, ResidualStatistics};
@@ -61,7 +60,7 @@ pub fn summary(sources: &ReportSources) -> Report {
         element_size: String::new(),
         blocks: blocks(sources),
         form_factors_stored: systems.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
-        form_factors_computed: form_factors_computed(placed, coupled),
+        form_factors_computed: form_factors_computed(placed, coupled) + equation.direct.computed,
         seconds: seconds(placed, coupled, &outcome.times),
         rounds: rounds(sources),
         coarse_unknowns: outcome.coarse_unknowns,

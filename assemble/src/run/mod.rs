@@ -87,7 +87,6 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&sources) };
     report.blocks.leave_out(HIDDEN_SHELLS, scene.hidden_shells);
     report.bytes.peak_rss = peak;
-    report.form_factors_computed += equation.direct.computed;
     if requests.explain {
         report.explained = explained(placed, &equation.coupled);
     }

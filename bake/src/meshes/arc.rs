@@ -1,10 +1,10 @@
-//! A piece of an edge as it is seen from the receiver's point: on one side of it something is hidden.
+//! A piece of a silhouette edge as seen from the receiver's point: on one side of it, something is hidden.
 
 use super::directions::Span;
 use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
-/// A segment before a sender, with the side on which a face hides what is behind.
+/// A segment in front of a sender, with the side on which a face hides what is behind it.
 #[derive(Debug, Clone, Copy)]
 pub struct Arc {
     /// Unit vectors from the receiver's point to the ends.
@@ -47,7 +47,7 @@ impl Arc {
     pub fn share_at(&self, direction: DVec3) -> Option<f64> {
         let [a, b] = self.ends;
         let (before, beyond) = (direction.cross(a).dot(self.hidden), b.cross(direction).dot(self.hidden));
-        // These are shares of the chord between unit vectors; the segment's own are as much smaller as it is far.
+        // These are shares of the chord between unit vectors; those of the segment follow after division by the distances.
         let (to_b, to_a) = (before / self.far[1], beyond / self.far[0]);
         (before > 0.0 && beyond > 0.0).then(|| to_b / (to_a + to_b))
     }

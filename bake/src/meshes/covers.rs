@@ -1,32 +1,32 @@
-//! A line of sight that never meets an edge: where it would, it leans to one side.
+//! A line of sight that never hits an edge: it is displaced infinitesimally to one side (symbolic perturbation).
 
 use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
-/// A direction, and where it leans if that alone decides nothing.
+/// A direction with symbolic perturbations.
 #[derive(Debug, Clone, Copy)]
 pub struct Sight {
     /// Unit vector from the receiver's point.
     pub along: DVec3,
-    /// At right angles to it, by and by: the second counts where the first decides nothing either.
+    /// The perturbations, at right angles to it; the second counts where the first does not decide.
     leans: [DVec3; 2],
 }
 
 impl Sight {
-    /// Leaning to the side of the unit vector `aside`, at a right angle to `along`.
+    /// Perturbed towards the unit vector `aside`, which is at a right angle to `along`.
     pub fn beside(along: DVec3, aside: DVec3) -> Self {
         Self { along, leans: [aside, along.cross(aside)] }
     }
 
-    /// Leaning somewhere.
+    /// Perturbed in an arbitrary direction.
     pub fn along(direction: DVec3) -> Self {
         Self::beside(direction, direction.any_orthonormal_vector())
     }
 
     /// Whether it passes on the left of the edge a → b (unit vectors), seen from the receiver's point.
     ///
-    /// An edge that is met within [`IN_PLANE`] is decided by the lean, so that of two faces that share an edge one is
-    /// met, and an edge that covers another to the last digits does not hide what is beside both.
+    /// Within [`IN_PLANE`] of an edge the perturbation decides, so that exactly one of two faces that share an edge is
+    /// hit, and of two coincident edges neither hides what is beside both.
     pub fn passes_left(&self, a: DVec3, b: DVec3) -> bool {
         let inwards = -a.cross(b - a);
         let height = inwards.dot(self.along);
@@ -40,8 +40,8 @@ impl Sight {
         heights.into_iter().find(|height| height.abs() > slack).is_some_and(|height| height > 0.0)
     }
 
-    /// Whether, from where it meets both a face and a sender's plane (unit normals), the face comes before the plane
-    /// on the side it leans to.
+    /// Whether, next to a common point of a face and a sender's plane (unit normals) on the line of sight, the face
+    /// lies in front of the plane on the perturbed side.
     ///
     /// A point at distance t in direction d on a plane n·y = n·y₀ moves by t (l − d (n·l)/(n·d)) as d leans towards l.
     pub fn rises(&self, face: DVec3, plane: DVec3) -> bool {

@@ -1,10 +1,10 @@
-//! Arcs cut up where they seem to cross: between cuts, what stands behind and before an arc does not change.
+//! Cuts arcs where they appear to cross: between cuts, what lies behind and in front of an arc does not change.
 
 use super::arc::Arc;
 use super::directions::{Span, Spans};
 use crate::geometry::tolerance::IN_PLANE;
 
-/// The arcs, cut wherever another seems to cross or to touch them. A cut too many does no harm, so near-ties cut.
+/// The arcs, cut wherever another appears to cross or touch them. Superfluous cuts are harmless, so near-ties cut.
 pub fn cut_at_crossings(arcs: &[Arc]) -> Vec<Arc> {
     let spans: Vec<Span> = arcs.iter().map(Arc::span).collect();
     let index = Spans::new(&spans);
@@ -23,7 +23,7 @@ pub fn cut_at_crossings(arcs: &[Arc]) -> Vec<Arc> {
     pieces
 }
 
-/// Append where along `arc` the `other` crosses it or ends on it, as shares of the segment.
+/// Appends where `other` crosses `arc` or ends on it, as shares of the segment.
 fn cut_by(arc: &Arc, other: &Arc, cuts: &mut Vec<f64>) {
     let [c, d] = other.ends;
     let (above, below) = (arc.hidden.dot(c), arc.hidden.dot(d));

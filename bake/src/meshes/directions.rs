@@ -1,8 +1,7 @@
-//! An index over directions: boxes around unit vectors, in a tree that needs no building.
+//! An index over directions: a tree of boxes around unit vectors, with fixed structure.
 //!
-//! Things come in an order in which neighbours are near each other, so the box around each run of a few of them is
-//! small, and so are the boxes around runs of runs. Boxes are kept in f32, rounded outwards; what is found is decided
-//! exactly by whoever asked.
+//! Neighbouring items of the list are near each other, so the boxes around a few consecutive items are small, and so
+//! are the boxes around a few consecutive boxes. Boxes are f32, rounded outwards; callers test the results exactly.
 
 use crate::geometry::tolerance::DIRECTION_MARGIN;
 use glam::{DVec3, Vec3A, Vec4};
@@ -15,10 +14,10 @@ pub struct Span {
 }
 
 impl Span {
-    /// Around nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY };
 
-    /// Around every direction in the convex cone that these unit vectors span.
+    /// The box around every direction in the convex cone that these unit vectors span.
     ///
     /// A point p in the convex hull of unit vectors with chords of at most c has |p|² ≥ 1 − c²/2, so p/|p| lies within
     /// the hull's box stretched by (1 − c²/2)^−½ ≤ 1 + c²/2 (for c ≤ 1).
@@ -36,7 +35,7 @@ impl Span {
         }
     }
 
-    /// Around this one direction.
+    /// The box around this one direction.
     pub fn at(direction: DVec3) -> Self {
         let direction = direction.as_vec3a();
         Self { low: direction - DIRECTION_MARGIN, high: direction + DIRECTION_MARGIN }
@@ -48,10 +47,10 @@ impl Span {
     }
 }
 
-/// How many boxes the next larger box holds: as many as are compared at once.
+/// Children of each box: as many as one vector comparison covers.
 const LANES: usize = 4;
 
-/// Neighbouring boxes, coordinate by coordinate, one a lane.
+/// Neighbouring boxes by coordinate, one a lane.
 #[derive(Debug, Clone, Copy)]
 struct SpanLanes {
     low: [Vec4; 3],
@@ -59,7 +58,7 @@ struct SpanLanes {
 }
 
 impl SpanLanes {
-    /// A run of at most [`LANES`] spans; the rest meets nothing.
+    /// The lanes of at most [`LANES`] spans; remaining lanes are empty.
     fn new(spans: &[Span]) -> Self {
         let at = |lane: usize| spans.get(lane).unwrap_or(&Span::EMPTY);
         let lanes = |value: fn(&Span) -> f32| Vec4::from_array(std::array::from_fn(|lane| value(at(lane))));
@@ -73,7 +72,7 @@ impl SpanLanes {
         Span { low: self.low.map(Vec4::min_element).into(), high: self.high.map(Vec4::max_element).into() }
     }
 
-    /// The lanes that meet `sought`, a bit each.
+    /// The lanes that meet `sought`, one bit each.
     fn meeting(&self, sought: &Span) -> u32 {
         let along = |axis: usize| {
             self.low[axis].cmple(Vec4::splat(sought.high[axis]))
@@ -83,15 +82,15 @@ impl SpanLanes {
     }
 }
 
-/// Spans of many things, to find those that meet another.
+/// An index over the spans of many items.
 #[derive(Debug, Default)]
 pub struct Spans {
-    /// Runs of the things' own spans, runs of the spans around those, and so on up to a single run.
+    /// The items' own spans in groups of lanes, then the spans around those groups, and so on up to a single group.
     levels: Vec<Vec<SpanLanes>>,
 }
 
 impl Spans {
-    /// The index over things with these spans; neighbours in the list should be near each other.
+    /// The index over items with these spans; neighbours in the list should be near each other.
     pub fn new(things: &[Span]) -> Self {
         let mut levels = Vec::new();
         let mut spans;
@@ -109,12 +108,12 @@ impl Spans {
         Self { levels }
     }
 
-    /// Around everything.
+    /// The box around everything.
     pub fn whole(&self) -> Span {
         self.levels.last().map_or(Span::EMPTY, |top| top[0].whole())
     }
 
-    /// Hand things whose spans meet `sought` to `found`, in order, until it returns true; whether it did.
+    /// Calls `found` with the items whose spans meet `sought`, in order, until it returns true. Returns whether it did.
     pub fn any(&self, sought: &Span, mut found: impl FnMut(usize) -> bool) -> bool {
         !self.levels.is_empty() && self.any_of(self.levels.len() - 1, 0, sought, &mut found)
     }

@@ -1,4 +1,4 @@
-//! Faces → a mesh: its corners and edges, and what is known about the whole.
+//! Builds a mesh from faces: its corners and edges, and properties of the whole.
 
 use super::mesh::{Edge, Mesh, steps};
 use super::touching_itself::touches_itself;
@@ -10,8 +10,8 @@ use equilux_formats::Face;
 use std::collections::HashMap;
 
 impl Mesh {
-    /// The mesh of `group`, some of `faces`. They should hang together: loose triangles are taken, too, but then no edge
-    /// is left out of the silhouette.
+    /// The mesh of `group`, some of `faces`. They should be connected: loose triangles are allowed, but every edge of
+    /// theirs belongs to the silhouette.
     pub fn from_faces(group: &[u32], faces: &[Face]) -> Self {
         let tree = BoxTree::new(
             &group.iter().map(|&f| Aabb::around(&faces[f as usize].corners)).collect::<Vec<_>>(),
@@ -86,7 +86,7 @@ impl Mesh {
         if rise.abs() <= FLATNESS * self.bounds.diagonal() { 0.0 } else { rise }
     }
 
-    /// Six times the volume behind the fronts of a closed mesh, below zero if that is all the space around a hollow.
+    /// Six times the volume that a closed mesh encloses, negative if its fronts face inwards.
     fn volume(&self) -> f64 {
         let cone = |face: usize| {
             let around = self.around(face);
@@ -97,7 +97,7 @@ impl Mesh {
     }
 }
 
-/// The things of a hierarchy such that neighbours are near each other.
+/// The items of a hierarchy in an order in which neighbours are near each other.
 fn in_order(tree: &BoxTree) -> impl Iterator<Item = usize> + '_ {
     let mut open: Vec<usize> = tree.root().into_iter().collect();
     let mut things: &[u32] = &[];

@@ -1,4 +1,4 @@
-//! Faces that hide together: corners, edges, and what is known about the whole.
+//! A mesh of faces: corners, edges, and properties of the whole.
 
 use crate::geometry::aabb::Aabb;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use glam::DVec3;
 pub struct Mesh {
     /// The box around it.
     pub bounds: Aabb,
-    /// The faces, as they are numbered outside; neighbours in this list are near each other.
+    /// The faces, by their numbers in the world; neighbours in this list are near each other.
     pub faces: Vec<u32>,
     /// All corners, once each.
     pub corners: Vec<DVec3>,
@@ -16,9 +16,9 @@ pub struct Mesh {
     /// it does not touch itself elsewhere.
     pub bounds_a_solid: bool,
     pub(super) edges: Vec<Edge>,
-    /// Whether it goes through itself, or touches itself.
+    /// Whether it intersects or touches itself.
     pub(super) touches_itself: bool,
-    /// Whether fronts look away from a bounded inside, and not into a hollow.
+    /// Whether fronts face outwards, and not into a hollow.
     pub(super) looks_out: bool,
     /// Corner numbers of all faces, and where each face's begin.
     pub(super) loops: Vec<u32>,
@@ -43,7 +43,7 @@ pub(super) struct Edge {
 }
 
 impl Mesh {
-    /// Whether a face, as numbered outside, is one of the mesh's.
+    /// Whether a face, by its number in the world, belongs to the mesh.
     pub fn has(&self, face: u32) -> bool {
         self.sorted.binary_search(&face).is_ok()
     }

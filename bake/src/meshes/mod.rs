@@ -1,13 +1,13 @@
-//! Meshes as occluders: what of a sender polygon a mesh of thousands of faces hides from a point.
+//! Meshes as occluders: the part of a sender polygon that a mesh of thousands of faces hides from a point.
 //!
-//! Seen from a point, what a mesh hides is bounded by its silhouette: the edges on whose two sides not as much is
-//! hidden, which of a closed mesh are those between faces that look at the point and faces that do not. Visibility on a
-//! sender changes nowhere else, except where the mesh goes through the sender itself. So a sender is cut along the few
-//! silhouette edges that are seen before it, instead of along every edge of every face, and stays exact. Compare Appel
-//! 1967, who counts what hides along such edges; here a face is asked where it matters.
+//! Seen from a point, the hidden region is bounded by the mesh's silhouette: the edges whose two sides differ in what
+//! is hidden. In a closed mesh these are the edges between faces that face the point and faces that do not. Visibility
+//! on a sender changes nowhere else, except where the mesh intersects the sender itself. A sender is therefore cut
+//! along the few silhouette edges in front of it, instead of along every edge of every face, and the result stays
+//! exact. Compare Appel 1967, who counts hiding surfaces along such edges; here faces are tested where it matters.
 //!
-//! [`Mesh`] is made once, [`SeenMesh`] once a receiver, [`SeenPolygon`] once a receiver and sender; an [`Obstruction`]
-//! is one of each, and cuts.
+//! A [`Mesh`] is computed once, a [`SeenMesh`] once a receiver, a [`SeenPolygon`] once a receiver and sender. An
+//! [`Obstruction`] combines a `SeenMesh` and a `SeenPolygon`, and cuts the sender.
 
 mod arc;
 mod covers;

@@ -1,4 +1,4 @@
-//! A mesh before a sender: the arcs along which the sender begins to be hidden.
+//! A mesh in front of a sender: the arcs that bound the hidden part of the sender.
 
 use super::arc::Arc;
 use super::covers::Sight;
@@ -10,17 +10,17 @@ use crate::geometry::polygon::Hides;
 use crate::geometry::tolerance::{APART, IN_PLANE, TEN_OPERATIONS};
 use glam::DVec3;
 
-/// A mesh and a sender, both as one receiver sees them.
+/// A mesh and a sender, both as seen by one receiver.
 #[derive(Debug)]
 pub struct Obstruction<'a, C: Fn(u32) -> bool> {
     seen: &'a SeenMesh<'a>,
     pub(super) sender: &'a SeenPolygon,
-    /// Which faces, as numbered outside, lie in the sender's plane.
+    /// Whether a face, by its number in the world, lies in the sender's plane.
     coplanar: C,
     place: Place,
 }
 
-/// Where the mesh is.
+/// The position of the mesh relative to the sender.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Place {
     /// Where it can hide nothing.
@@ -32,12 +32,13 @@ enum Place {
 }
 
 impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
-    /// `coplanar` tells which faces, as numbered outside, lie in the sender's plane: those hide nothing of it.
+    /// `coplanar` returns whether a face, by its number in the world, lies in the sender's plane and therefore hides
+    /// nothing of it.
     pub fn new(seen: &'a SeenMesh<'a>, sender: &'a SeenPolygon, coplanar: C) -> Self {
         Self { place: place(seen, sender), seen, sender, coplanar }
     }
 
-    /// What the mesh hides of the sender; if only a part, `arcs` are what bounds it on the sender.
+    /// How much of the sender the mesh hides. If it hides a part, `arcs` receives the arcs that bound it.
     pub(super) fn outline(&self, arcs: &mut Vec<Arc>) -> Hides {
         arcs.clear();
         if self.place == Place::Aside {
@@ -68,14 +69,14 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
         self.clip(&self.seen.inner, &sides, &mut others);
         if self.may_touch() {
             self.seams(&sides, &mut others);
-            // What stands behind an arc also changes where the mesh goes through the sender.
+            // What lies behind an arc also changes where the mesh intersects the sender.
             others.append(arcs);
             others = cut_at_crossings(&others);
         }
         arcs.extend(others.into_iter().filter(|arc| self.is_open_beside(arc)));
     }
 
-    /// The arcs as far as they stand before the sender's inside.
+    /// The arcs, clipped to the sender.
     fn clip(&self, from: &Arcs, sides: &[DVec3], arcs: &mut Vec<Arc>) {
         from.spans.any(&self.sender.span, |index| {
             arcs.extend(inside(from.all[index], sides).and_then(|arc| self.before(arc)));
@@ -91,7 +92,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
         if hides { arc.above(|p| self.sender.height(p), self.slack(0.0)) } else { None }
     }
 
-    /// Whether the mesh may go through the sender, or touch it.
+    /// Whether the mesh may intersect or touch the sender.
     fn may_touch(&self) -> bool {
         let (mesh, point) = (self.seen.mesh, self.seen.point);
         let margin = APART * mesh.bounds.diagonal();
@@ -99,7 +100,8 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
             && self.sender.meets_box(mesh.bounds.moved(-point).grown(margin))
     }
 
-    /// Where faces go through the sender or end on it: what is before its plane hides what is beside the seam.
+    /// The seams where faces intersect the sender or end on it: the part of a face in front of the plane hides one side
+    /// of the seam.
     fn seams(&self, sides: &[DVec3], arcs: &mut Vec<Arc>) {
         self.seen.hiding_in(&self.sender.span, |hiding| {
             if !(self.coplanar)(self.seen.mesh.faces[hiding.face as usize]) {
@@ -108,13 +110,13 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
         });
     }
 
-    /// The edge that the sender's plane gives to the piece of a face before it. Around the front of a face, what the
-    /// face hides is on the left; so along the seam it is, from where the face goes down to where it comes up.
+    /// The edge where the sender's plane cuts off the piece of a face in front of it. The edge runs from where the
+    /// face's boundary passes behind the plane to where it returns, with the hidden side on the left for a front.
     fn seam(&self, Hiding { face, front }: Hiding) -> Option<Arc> {
         let slack = self.slack(0.0);
         let corners = self.seen.mesh.around(face as usize);
         let height = |corner: u32| self.sender.height(self.seen.corner(corner));
-        // Further in than rounding, a corner is before the plane or behind it; if not, it is on it.
+        // Corners within rounding of the plane are on it; others are in front of it or behind it.
         let level = |corner: u32| Some(height(corner)).filter(|h| h.abs() > slack).unwrap_or(0.0);
         if !corners.iter().any(|&corner| level(corner) > 0.0) {
             return None;
@@ -135,7 +137,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
         Arc::new(if front { [down?, up?] } else { [up?, down?] }, face)
     }
 
-    /// Whether one sees past the arc to the sender, on the side that its own face does not hide.
+    /// Whether the sender is visible next to the arc, on the side that the arc's own face does not hide.
     fn is_open_beside(&self, arc: &Arc) -> bool {
         !self.hides(&Sight::beside(arc.middle(), -arc.hidden))
     }
@@ -150,7 +152,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     fn is_before(&self, face: usize, sight: &Sight) -> bool {
         let distance = self.seen.distance(face, sight.along);
         let height = self.sender.height(sight.along * distance);
-        // A face that is seen nearly edge-on is met at a distance that rounding shifts the more.
+        // Rounding affects the distance of a face more, the nearer to edge-on it is seen.
         let grazing = self.seen.mesh.normal(face).dot(sight.along).abs();
         if height.abs() > self.slack(distance) + TEN_OPERATIONS * distance / grazing {
             height > 0.0
@@ -159,13 +161,13 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
         }
     }
 
-    /// Heights up to this are on the plane.
+    /// Heights up to this count as in the plane.
     fn slack(&self, distance: f64) -> f64 {
         IN_PLANE * self.sender.reach.max(distance)
     }
 }
 
-/// The arc as far as it is inside of all planes through the receiver's point.
+/// The arc clipped by all planes through the receiver's point.
 fn inside(arc: Arc, sides: &[DVec3]) -> Option<Arc> {
     sides.iter().try_fold(arc, |rest, &side| rest.clip(side))
 }

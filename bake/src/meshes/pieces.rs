@@ -1,8 +1,8 @@
-//! What is left of a sender behind a mesh, as convex pieces.
+//! The visible part of a sender behind a mesh, as convex pieces.
 //!
-//! The arcs that bound what is hidden cut the sender into pieces on which visibility is constant, one after the other,
-//! each only the piece it crosses. A piece without arcs is hidden or not as the side of the last arc was that cut it
-//! out (a solid-leaf BSP: Thibault & Naylor 1987).
+//! The arcs that bound the hidden part cut the sender into pieces of constant visibility. Each arc cuts only the pieces
+//! it crosses. Whether a piece without arcs is hidden follows from its side of the last arc that cut it (a solid-leaf
+//! BSP: Thibault & Naylor 1987).
 
 use super::arc::Arc;
 use super::obstruction::Obstruction;
@@ -11,7 +11,7 @@ use crate::geometry::tolerance::SHORTEST_ARC;
 use glam::DVec3;
 
 impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
-    /// Hand to `outside` the convex pieces of the sender that the mesh does not hide, and say which case it was.
+    /// Calls `outside` with the convex pieces of the sender that the mesh does not hide, and returns how much it hides.
     pub fn subtract(&self, outside: &mut impl FnMut(&[DVec3])) -> Hides {
         let mut arcs = Vec::new();
         let hides = self.outline(&mut arcs);
@@ -23,13 +23,13 @@ impl<C: Fn(u32) -> bool> Obstruction<'_, C> {
         hides
     }
 
-    /// Cut `polygon` along the longest of its arcs, and both halves along the others.
+    /// Cuts `polygon` along the longest of its arcs, and both halves along the others.
     fn cut(&self, mut polygon: Polygon, mut arcs: Vec<Arc>, outside: &mut impl FnMut(&[DVec3])) {
         while let Some(splitter) = take_longest(&mut arcs) {
             let [hidden, open] =
                 [splitter.hidden, -splitter.hidden].map(|plane| half(&polygon, &arcs, plane));
             let mut rest = None;
-            // The half with fewer arcs first, so that what waits is never deep.
+            // The half with fewer arcs first, which bounds the depth of the stack.
             let halves = if hidden.as_ref().map_or(0, arcs_in) < open.as_ref().map_or(0, arcs_in) {
                 [(hidden, true), (open, false)]
             } else {
@@ -68,7 +68,7 @@ fn take_longest(arcs: &mut Vec<Arc>) -> Option<Arc> {
     Some(arcs.swap_remove(longest))
 }
 
-/// What is on the positive side of a plane.
+/// The part on the positive side of a plane.
 fn half(polygon: &Polygon, arcs: &[Arc], plane: DVec3) -> Option<Half> {
     let piece = match clip(polygon, |p| plane.dot(p)) {
         Side::All => polygon.clone(),

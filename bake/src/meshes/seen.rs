@@ -1,4 +1,4 @@
-//! A mesh as it is seen from one receiver: which faces hide something, and where the silhouette runs.
+//! A mesh as seen from one receiver: which faces hide something, and its silhouette.
 
 use super::arc::Arc;
 use super::covers::Sight;
@@ -8,7 +8,7 @@ use super::mesh::{Edge, Mesh, steps};
 use crate::geometry::tolerance::IN_PLANE;
 use glam::{DVec3, Vec3A};
 
-/// What all senders of one receiver share.
+/// The view of a mesh from one receiver, shared by all senders.
 #[derive(Debug)]
 pub struct SeenMesh<'a> {
     pub(super) mesh: &'a Mesh,
@@ -21,9 +21,9 @@ pub struct SeenMesh<'a> {
     spans: Spans,
     /// Box around the directions in which something is hidden.
     pub span: Span,
-    /// Arcs with nothing of the mesh on their open side.
+    /// Arcs whose open side is not covered by the mesh.
     pub(super) outer: Arcs,
-    /// Arcs with some of the mesh before or behind them on their open side.
+    /// Arcs with part of the mesh in front of or behind them on their open side.
     pub(super) inner: Arcs,
 }
 
@@ -36,7 +36,7 @@ pub(super) struct Hiding {
     pub front: bool,
 }
 
-/// Arcs, and an index over them.
+/// Arcs with an index.
 #[derive(Debug, Default)]
 pub(super) struct Arcs {
     pub all: Vec<Arc>,
@@ -47,8 +47,8 @@ pub(super) struct Arcs {
 type SeenSide = Option<bool>;
 
 impl Mesh {
-    /// The mesh as the receiver at `point` with the unit normal `normal` sees it. `coplanar` tells which faces, as
-    /// numbered outside, lie in the receiver's own plane: those hide nothing from it.
+    /// The mesh as the receiver at `point` with the unit normal `normal` sees it. `coplanar` returns whether a face, by
+    /// its number in the world, lies in the receiver's own plane and therefore hides nothing from it.
     pub fn seen_from(&self, point: DVec3, normal: DVec3, coplanar: impl Fn(u32) -> bool) -> SeenMesh<'_> {
         let mut seen = SeenMesh {
             mesh: self,
@@ -76,7 +76,7 @@ impl SeenMesh<'_> {
         })
     }
 
-    /// Hand over the faces that may hide something within `span`.
+    /// Calls `found` with the faces that may hide something within `span`.
     pub(super) fn hiding_in(&self, span: &Span, mut found: impl FnMut(Hiding)) {
         self.spans.any(span, |i| {
             found(self.hiding[i]);
@@ -102,11 +102,11 @@ impl SeenMesh<'_> {
         })
     }
 
-    /// Which side of each face hides something, and the sign of what rises where nothing begins to be hidden.
+    /// The side of each face that hides something, and the sign of the rise of edges that cannot be silhouette.
     ///
-    /// Before each back of a solid stands a front that hides as much, so one side of the faces is enough; and where a
-    /// front goes down into a groove, the groove's other side stands before it, and before that another front. Seen
-    /// from within the solid it is the other way round.
+    /// In front of each back of a solid lies a front that hides as much, so one side of the faces is enough. At the
+    /// edge of a front in a groove, the groove's other side lies in front, and in front of that another front. Seen
+    /// from inside the solid, it is the other way round.
     fn sides(&self, normal: DVec3, coplanar: impl Fn(u32) -> bool) -> (Vec<SeenSide>, f64) {
         let heights = self.heights(coplanar);
         let side = |&height: &f64| (height != 0.0).then_some(height > 0.0);
@@ -118,7 +118,7 @@ impl SeenMesh<'_> {
         (sides, if front { 1.0 } else { -1.0 })
     }
 
-    /// How high the point is before each face; zero in its plane.
+    /// Height of the receiver's point over each face; zero in its plane.
     fn heights(&self, coplanar: impl Fn(u32) -> bool) -> Vec<f64> {
         let far: Vec<f64> = self.mesh.corners.iter().map(|&p| (p - self.point).length_squared()).collect();
         let height = |(position, &face): (usize, &u32)| {
@@ -130,7 +130,7 @@ impl SeenMesh<'_> {
         self.mesh.faces.iter().enumerate().map(height).collect()
     }
 
-    /// Whether the receiver looks into the solid: the next face along its normal tells.
+    /// Whether the receiver is inside the solid, decided by the next face along its normal.
     fn is_inside(&self, normal: DVec3, heights: &[f64]) -> bool {
         if !self.mesh.bounds.holds(self.point) {
             return !self.mesh.looks_out;
@@ -178,7 +178,7 @@ impl SeenMesh<'_> {
         (self.outer, self.inner) = (Arcs::new(outer), Arcs::new(inner));
     }
 
-    /// The edge if it belongs to the silhouette: if not as much is hidden on one side of it as on the other.
+    /// The arc of an edge that belongs to the silhouette: an edge whose two sides differ in what is hidden.
     fn arc(&self, edge: &Edge, sides: &[SeenSide]) -> Option<Arc> {
         let left = sides[edge.left as usize];
         let right = edge.right.and_then(|right| sides[right as usize]);

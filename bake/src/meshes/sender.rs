@@ -1,4 +1,4 @@
-//! A sender polygon as it is seen from one receiver.
+//! A sender polygon as seen from one receiver.
 
 use super::directions::Span;
 use crate::geometry::aabb::Aabb;
@@ -6,7 +6,7 @@ use crate::geometry::polygon::Polygon;
 use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 
-/// What all meshes that may hide a sender share.
+/// The view of a sender from one receiver, shared by all meshes.
 #[derive(Debug)]
 pub struct SeenPolygon {
     /// Corners relative to the receiver's point, above its horizon, counter-clockwise from the front.
@@ -22,15 +22,14 @@ pub struct SeenPolygon {
 }
 
 impl SeenPolygon {
-    /// The convex polygon on `corners`, a piece of `face`. Its front, where the unit vector `normal` points, must be
-    /// turned to the receiver.
+    /// The convex polygon on `corners`, a piece of `face`. Its front, towards the unit vector `normal`, must face the receiver.
     pub fn new(corners: Polygon, normal: DVec3, face: u32) -> Self {
         let span = Span::over(corners.iter().map(|p| p.normalize().as_vec3a()));
         let reach = corners.iter().map(|p| p.length_squared()).fold(0.0, f64::max).sqrt();
         Self { span, corners, normal, face, reach }
     }
 
-    /// How far a point stands before the plane.
+    /// Height of a point over the plane.
     pub(super) fn height(&self, p: DVec3) -> f64 {
         self.normal.dot(p - self.corners[0])
     }
@@ -48,8 +47,8 @@ impl SeenPolygon {
         !(0..3).any(|axis| below(axis) || above(axis))
     }
 
-    /// Unit normals, inwards, of the planes through the receiver's point and one edge each. An edge that is seen as a
-    /// point, such as cutting leaves between corners that are the same but for rounding, bounds nothing.
+    /// Unit normals, inwards, of the planes through the receiver's point and one edge each. Edges seen as a point, such
+    /// as between corners that differ by rounding only, have no plane.
     pub(super) fn sides(&self) -> Polygon {
         let count = self.corners.len();
         let side = |i: usize| {

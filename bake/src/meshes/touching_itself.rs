@@ -1,4 +1,4 @@
-//! Whether a mesh goes through itself, or touches itself other than along the edges that its faces share.
+//! Tests whether a mesh intersects itself, or touches itself other than along shared edges of its faces.
 
 use super::mesh::{Mesh, steps};
 use crate::geometry::aabb::Aabb;
@@ -6,8 +6,8 @@ use crate::geometry::box_tree::{BoxTree, Inside};
 use crate::geometry::tolerance::{IN_PLANE, INSIDE_A_FACE};
 use glam::DVec3;
 
-/// Whether an edge of any face goes through the inside of another, or touches it. Where faces cross, one of them has
-/// an edge that goes through the other.
+/// Whether an edge of any face intersects or touches the interior of another. Where faces cross, an edge of one of them
+/// intersects the other.
 pub(super) fn touches_itself(mesh: &Mesh) -> bool {
     let boxes: Vec<Aabb> = (0..mesh.faces.len()).map(|face| bounds(mesh, face)).collect();
     let tree = BoxTree::new(&boxes);
@@ -39,7 +39,7 @@ fn bounds(mesh: &Mesh, face: usize) -> Aabb {
     Aabb::around(mesh.around(face).iter().map(|&corner| mesh.corners[corner as usize]))
 }
 
-/// Whether an edge of one face meets the inside of the other.
+/// Whether an edge of one face meets the interior of the other.
 fn touches(mesh: &Mesh, face: usize, other: usize) -> bool {
     let at = |corner: u32| mesh.corners[corner as usize];
     let (normal, around) = (mesh.normal(other), mesh.around(other));

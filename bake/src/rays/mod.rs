@@ -11,14 +11,14 @@ use obvhs::bvh2::Bvh2;
 use obvhs::ray::{Ray, RayHit};
 use std::fmt;
 
-/// Finds what a ray meets first.
+/// An index for finding the first hit of a ray.
 pub struct RayIndex<'a> {
     elements: &'a [Element],
     bvh: Option<Bvh2>,
     centre: DVec3,
 }
 
-/// What a ray meets.
+/// A hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
     /// Index of the element.
@@ -40,15 +40,15 @@ impl<'a> RayIndex<'a> {
     pub fn new(elements: &'a [Element]) -> Self {
         let corners = elements.iter().flat_map(|e| e.corners.as_slice().iter().copied());
         let (centre, padding) = frame(corners);
-        // Rays also come from eyes a few extents away, and their slab tests round as far as they travel.
+        // Rays may start a few extents away, and the rounding of slab tests grows with their length.
         let padding = 8.0 * padding;
         let boxes: Vec<Box3> =
             elements.iter().map(|e| Box3(bounds(e.corners.as_slice(), centre, padding))).collect();
         Self { elements, bvh: build(&boxes), centre }
     }
 
-    /// The nearest hit beyond distance 0 along `direction` from `origin`. Of two elements back to back the one that
-    /// shows its front is met.
+    /// The nearest hit beyond distance 0 along `direction` from `origin`. Of two elements back to back, the one that
+    /// faces the origin is hit.
     pub fn first_hit(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         self.nearest(origin, direction, |_| true)
     }

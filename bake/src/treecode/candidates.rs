@@ -1,5 +1,5 @@
-//! Lists of what may stand between receivers and a sender. They start with the box around everything and are narrowed
-//! on the way down the two hierarchies; entries are boxes that have not been opened, or occluders.
+//! Lists of possible occluders between receivers and a sender. They start with the box around everything and are
+//! narrowed on the way down the two hierarchies. Entries are unopened boxes or occluders.
 
 use super::viewers::Viewers;
 use crate::form_factor::wide::vectorised;
@@ -13,7 +13,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 use std::ops::Range;
 
-/// All lists of one search, one after the other.
+/// All lists of one search, concatenated.
 pub struct Candidates<'a> {
     world: &'a World,
     entries: Vec<Entry>,
@@ -23,28 +23,29 @@ pub struct Candidates<'a> {
 /// An entry of a list.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Entry {
-    /// Whatever is in this box of the hierarchy.
+    /// Everything in this box of the hierarchy.
     Box(u32),
     /// This occluder.
     Occluder(u32),
 }
 
-/// What narrowing a list found.
+/// The result of narrowing a list.
 pub enum Verdict {
-    /// One occluder stands between all of the receivers and all of the sender.
+    /// One occluder hides all of the sender from all receivers.
     Hidden,
-    /// Nothing but this list can stand in between.
+    /// Only the occluders of this list can hide the sender.
     Between(Range<usize>),
 }
 
-/// Boxes larger than this share of receivers or sender are opened: smaller ones would only lengthen the list.
+/// Boxes larger than this share of the receivers or sender are opened; opening smaller ones would only lengthen the list.
 const OPEN_ABOVE: f64 = 0.5;
 
-/// Up to this many faces of a mesh hide one by one, which shows when one of them hides everything; more hide together.
+/// Up to this many faces of a mesh are tested one by one, which detects that one of them hides everything; more occlude
+/// as a mesh.
 const FEW: usize = 8;
 
 impl<'a> Candidates<'a> {
-    /// The list that holds everything.
+    /// The list of all occluders.
     pub fn all(world: &'a World) -> (Self, Range<usize>) {
         let root = world.occluders.tree.root().map(|root| Entry::Box(root as u32));
         let entries: Vec<Entry> = root.into_iter().collect();
@@ -57,7 +58,7 @@ impl<'a> Candidates<'a> {
         Self { world, entries: vec![], open: vec![] }
     }
 
-    /// Take over a list of another search.
+    /// Copies a list of another search.
     pub fn adopt(&mut self, list: &[Entry]) -> Range<usize> {
         let first = self.entries.len();
         self.entries.extend_from_slice(list);
@@ -69,13 +70,13 @@ impl<'a> Candidates<'a> {
         &self.entries[list]
     }
 
-    /// What of `list` can stand between viewers and sender.
+    /// Narrows `list` to what can stand between viewers and sender.
     pub fn narrow(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Sender) -> Verdict {
         let size = viewers.diameter.max(sender.bounds.diagonal());
         self.filter(list, viewers, sender, OPEN_ABOVE * size)
     }
 
-    /// The same down to single occluders.
+    /// Like [`Self::narrow`], down to single occluders.
     pub fn occluders(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Sender) -> Verdict {
         self.filter(list, viewers, sender, 0.0)
     }
@@ -152,11 +153,11 @@ struct Between<'a> {
     /// Face and occluder of a flat sender.
     sender_face: Option<FaceId>,
     sender_occluder: Option<u32>,
-    /// From the middle of the viewers to the middle of the sender.
+    /// The middle of the viewers and the middle of the sender.
     axis: [DVec3; 2],
-    /// Every cross-section of the region is at least this large.
+    /// Lower bound of the diameter of every cross-section of the region.
     narrowest: f64,
-    /// How far the sender must lie behind a face at least to be hidden by it: it may be part of the face.
+    /// The least distance of a sender behind a face that hides it: a nearer sender may be part of the face.
     slack: f64,
 }
 
@@ -209,7 +210,7 @@ impl<'a> Between<'a> {
         self.shaft.misses_box(&occluder.bounds) || self.shaft.misses(&occluder.corners)
     }
 
-    /// The faces of a mesh that may stand in between; none if they are more than [`FEW`].
+    /// The faces of a mesh that may stand in between; none if there are more than [`FEW`].
     fn faces_of(&self, Together { tree, first, .. }: &Together) -> Option<SmallVec<[u32; FEW]>> {
         let mut faces = SmallVec::new();
         let mut open: SmallVec<[usize; 32]> = tree.root().into_iter().collect();
@@ -249,7 +250,7 @@ impl<'a> Between<'a> {
         let origin = face.corners[0];
         let [from, to] = self.axis;
         let side = face.normal.dot(from - origin);
-        // The axis is looked at first: most faces are not even in its way.
+        // The axis is tested first, because most faces do not even cross it.
         if side == 0.0 || face.normal.dot(to - origin) * side.signum() >= -self.slack {
             return false;
         }
@@ -264,7 +265,7 @@ impl<'a> Between<'a> {
         };
         let edges = || 0..face.corners.len();
         edges().all(|i| inwards(i, from).dot(axis) >= 0.0)
-            // Strictly before it: viewers may lie on the face themselves, and look away from it.
+            // Strictly in front of it: viewers may lie on the face and face away from it.
             && self.viewers.hull.iter().all(|&p| {
                 face.normal.dot(p - origin) * side.signum() > ON_FACE * (p - origin).length()
             })

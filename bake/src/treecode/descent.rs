@@ -1,5 +1,5 @@
-//! Down the receivers' hierarchy: what one group of receivers finds out about senders and what stands in between holds for
-//! all that it consists of.
+//! Traversal of the receivers' hierarchy: the senders and occluders found for a group of receivers hold for all of its
+//! subgroups.
 
 use super::frontier::Frontier;
 use super::receivers::{Group, receiver_groups};
@@ -12,9 +12,9 @@ use std::time::{Duration, Instant};
 
 /// Computes the rows of one block.
 pub struct Descent<'a> {
-    /// What is asked for.
+    /// The block to compute.
     pub request: &'a Request<'a>,
-    /// Progress, and the wish to stop.
+    /// Progress, and the request to stop.
     pub monitor: &'a Monitor,
 }
 
@@ -27,13 +27,13 @@ pub struct BlockRows {
     pub sums: Vec<f64>,
     /// Number of form factors that were computed for each receiver.
     pub computed: Vec<u32>,
-    /// Number of groups that are not what they were before; all, if there is no before.
+    /// Number of groups that differ from those of the older block; all, if there is none.
     pub changed: usize,
     /// Time summed over threads.
     pub time: Duration,
 }
 
-/// A frontier is worked out again when the receivers have become this much smaller.
+/// A frontier is narrowed when the size of the receivers has shrunk to this share.
 const SMALLER: f64 = 0.7;
 
 impl<'a> Descent<'a> {
@@ -45,7 +45,7 @@ impl<'a> Descent<'a> {
         self.descend(&group, &Frontier::all(self.request), f64::INFINITY)
     }
 
-    /// The rows of a group. `size` is that of the receivers that the frontier was made for.
+    /// The rows of a group. `size` is the diameter of the receivers that the frontier was narrowed for.
     fn descend(&self, group: &Group, frontier: &Frontier<'a>, size: f64) -> BlockRows {
         let start = Instant::now();
         let Some(halves) = &group.halves else { return self.search(group, frontier, start) };

@@ -1,9 +1,9 @@
 //! Form factors from all receivers of a cluster to one sender polygon behind a short list of occluders.
 //!
-//! What is the same for all receivers is done once: the horizon cuts the sender, and the sender's plane tells which
-//! occluders stand before it. Then the receivers, a few lanes at a time, see how the sender lies to the pyramid that each
-//! occluder hides. Only where a pyramid cuts the sender, for that receiver alone, polygons are clipped; and then meshes hide
-//! some of what is left.
+//! Work common to all receivers is done once: the horizon clips the sender, and the sender's plane selects the
+//! occluders in front of it. Then the sender is classified against the pyramid of each occluder, for a few receivers
+//! (lanes) at a time. Polygons are clipped only for receivers where a pyramid cuts the sender; then parts hidden by
+//! meshes are removed.
 
 use super::candidates::Entry;
 use super::pieces::{Pieces, Scissors};
@@ -22,40 +22,40 @@ use equilux_formats::FaceId;
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// Computes entries, and remembers the pyramids that were needed for it.
+/// Computes entries, and caches the pyramids that it needed.
 pub struct Evaluator<'a> {
     world: &'a World,
     /// Pyramids of whole occluders.
     whole: Pyramids,
-    /// Those of each occluder, once they were needed.
+    /// The pyramids of each occluder that was needed so far.
     known: Vec<Option<OccluderPyramids>>,
-    /// Pyramids of what one sender's plane leaves of occluders.
+    /// Pyramids of occluders that one sender's plane has clipped.
     pieces: Pyramids,
     meshes: SeenMeshes<'a>,
-    /// The pyramids before the sender, and whose they are.
+    /// The pyramids in front of the sender.
     before: Vec<Before>,
     chunk: Chunk,
     clipper: Clipper,
     edges: Edges,
 }
 
-/// A pyramid before the sender.
+/// A pyramid in front of the sender, and the list it is in.
 #[derive(Clone, Copy)]
 enum Before {
     Whole(OccluderPyramids),
     Piece(OccluderPyramids),
 }
 
-/// What some receivers, a lane each, see of a sender.
+/// The view of one sender from several receivers, one a lane.
 #[derive(Default)]
 struct Chunk {
     /// The sender's corners relative to the receivers.
     corners: Vec<Vectors>,
-    /// Unoccluded form factors; zero where all is hidden.
+    /// Unoccluded form factors; zero where the sender is hidden.
     values: Lane,
-    /// Lanes whose contour is not to be trusted: far from the sender, or very near.
+    /// Lanes whose vectorised contour is inaccurate: far from the sender, or very near.
     plain: [bool; LANES],
-    /// Distances below this are none.
+    /// Smaller distances count as zero.
     slack: Lane,
     /// The pyramids that cut the sender, and by which planes.
     cuts: [Vec<Cut>; LANES],
@@ -69,7 +69,7 @@ struct Cut {
 }
 
 impl<'a> Evaluator<'a> {
-    /// For one cluster of receivers.
+    /// An evaluator for one cluster of receivers.
     pub fn new(world: &'a World) -> Self {
         Self {
             world,
@@ -84,7 +84,7 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    /// Append a form factor for every receiver; false if all of them are zero.
+    /// Appends a form factor for every receiver; returns false if all are zero.
     pub fn evaluate(
         &mut self,
         receivers: &Receivers,
@@ -130,7 +130,7 @@ impl<'a> Evaluator<'a> {
         values[first..].iter().any(|&value| value != 0.0)
     }
 
-    /// What of the list stands before the sender's plane, whichever receiver looks.
+    /// Selects the occluders in front of the sender's plane, for all receivers.
     fn find_before(&mut self, receivers: &Receivers, sender: &Sender, occluders: &[Entry]) {
         self.before.clear();
         self.pieces.clear();
@@ -185,7 +185,7 @@ impl<'a> Evaluator<'a> {
 }
 
 impl Chunk {
-    /// See how the sender `polygon`, whose front looks along `facing`, lies to all pyramids.
+    /// Classifies the sender `polygon`, whose front faces along `facing`, against all pyramids.
     #[inline(always)]
     fn look(
         &mut self,
@@ -206,7 +206,7 @@ impl Chunk {
             self.corners.push(to);
         }
         self.slack = reach2.map(|reach2| IN_PLANE * reach2.sqrt());
-        // Receivers behind the sender's plane, or in it, see nothing of it.
+        // Receivers behind the sender's plane, or in it, do not see it.
         let mut dark = [false; LANES];
         let to = &self.corners[0];
         for lane in 0..LANES {
@@ -243,7 +243,7 @@ impl Chunk {
     }
 }
 
-/// What one receiver sees.
+/// The view of one sender from one receiver.
 struct ReceiverView<'a> {
     chunk: &'a mut Chunk,
     planes: &'a [&'a [Planes]],
@@ -252,7 +252,7 @@ struct ReceiverView<'a> {
     normal: DVec3,
 }
 
-/// Takes what is hidden from one receiver out of its value.
+/// Subtracts the hidden parts of a sender from one receiver's form factor.
 #[derive(Default)]
 struct Clipper {
     scissors: Scissors,
@@ -261,7 +261,7 @@ struct Clipper {
 }
 
 impl Clipper {
-    /// Correct the last of `values`, which is the unoccluded form factor, not zero.
+    /// Corrects the last of `values`, which is an unoccluded form factor above zero.
     fn add(&mut self, seen: ReceiverView, values: &mut [f64], edges: &mut Edges) {
         let ReceiverView { chunk, planes, occluders, lane, normal } = seen;
         let place = values.len() - 1;
@@ -280,7 +280,7 @@ impl Clipper {
         if plain {
             values[place] = contour::form_factor(&polygon, normal);
         }
-        // The last bit stands for planes, too, that are none for this receiver.
+        // The last bit may stand for planes that do not exist for this receiver.
         let cutting = |cut: &Cut| {
             let planes = planes[cut.before as usize];
             let normals = bits(cut.planes, planes.len()).map(move |number| normal_of(&planes[number], lane));
@@ -295,7 +295,7 @@ impl Clipper {
                 }
             }
             cuts => {
-                // The fewer planes cut the sender, the more of it is hidden and the fewer pieces are left.
+                // Pyramids with few cutting planes come first: they hide more and leave fewer pieces.
                 cuts.sort_by_key(|cut| cut.planes.count_ones());
                 self.pieces.clear();
                 self.pieces.push(&polygon);

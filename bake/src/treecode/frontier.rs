@@ -1,5 +1,4 @@
-//! The senders that a group of receivers may see, each with a list of what may stand in between; narrowed as receivers
-//! are halved.
+//! The senders that a group of receivers may see, each with a list of possible occluders; narrowed as receivers are halved.
 
 use super::candidates::{Candidates, Entry, Verdict};
 use super::request::Request;
@@ -7,24 +6,24 @@ use super::viewers::Viewers;
 use crate::world::Sender;
 use std::ops::Range;
 
-/// Senders that a group of receivers may see, and what may stand in between.
+/// Senders that a group of receivers may see, and their possible occluders.
 pub struct Frontier<'a> {
     candidates: Candidates<'a>,
     senders: Vec<(u32, Range<usize>)>,
 }
 
-/// Senders stay closed on a frontier up to this share of the receivers' size, or of the distance to them.
+/// A frontier does not open senders smaller than this share of the receivers' size, or of the distance to them.
 const CLOSED: f64 = 0.5;
 
 impl<'a> Frontier<'a> {
-    /// Everything that sends, behind everything there is.
+    /// All senders, each with all occluders.
     pub fn all(request: &Request<'a>) -> Self {
         let (candidates, all) = Candidates::all(request.world);
         let roots = request.senders.iter().filter_map(|&sender| request.world.root_of(sender));
         Self { candidates, senders: roots.map(|root| (root as u32, all.clone())).collect() }
     }
 
-    /// Whether there is nothing to be searched.
+    /// Whether there are no senders.
     pub fn is_empty(&self) -> bool {
         self.senders.is_empty()
     }
@@ -34,7 +33,7 @@ impl<'a> Frontier<'a> {
         self.senders.iter().map(|(node, list)| (*node, self.candidates.slice(list.clone())))
     }
 
-    /// What some of the receivers see of it.
+    /// The frontier of some of the receivers.
     pub fn narrowed(&self, request: &Request<'a>, viewers: &Viewers) -> Self {
         let mut candidates = Candidates::none(request.world);
         let mut narrowed = Self { candidates: Candidates::none(request.world), senders: vec![] };
@@ -62,8 +61,8 @@ impl<'a> Frontier<'a> {
     }
 }
 
-/// Whether nothing that changed can matter to a sender around which nothing can have had an entry: only flat ones have. What
-/// lies inside a flat sender is looked at entry by entry, later.
+/// Whether a change cannot affect a sender that is not flat, and that therefore had no entry. Flat senders are tested
+/// entry by entry later.
 fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
     let (world, Some(revision)) = (request.world, &request.revision) else { return false };
     let sender = &world.nodes[node as usize];

@@ -1,10 +1,10 @@
 //! Rows of exact form factors to adaptively chosen senders: a point-to-cluster treecode.
 //!
-//! Receivers and senders are hierarchies. Down the receivers' goes a frontier of senders that may be seen from there, each
-//! with a list of what may stand in between; lists only get shorter on the way down. At a flat cluster of receivers the
-//! senders are searched from the frontier on, nearest first. A sender that no light can reach the receivers from is
-//! dropped; one that is small and far enough gets one entry, its exact, occluded form factor; any other is opened. A
-//! search ends early when every row has reached one. Compare Appel 1985 for the tree, Haines & Wallace 1994 for the
+//! Receivers and senders form hierarchies. The traversal of the receivers' hierarchy keeps a frontier of senders that
+//! may be visible, each with a list of possible occluders; lists only get shorter on the way down. A flat cluster of
+//! receivers searches the senders from the frontier on, nearest first. A sender whose light cannot reach the receivers
+//! is dropped; a small or distant sender gets one entry, its exact, occluded form factor; any other is opened. A search
+//! ends early when every row sum has reached one. Compare Appel 1985 for the tree, Haines & Wallace 1994 for the
 //! shafts; what is new is that no entry is an approximation.
 
 mod candidates;
@@ -30,31 +30,31 @@ use std::time::Duration;
 pub use request::{Audience, Request};
 pub use resolution::{EXACT, MISSED, Resolution};
 
-/// A block and what it took.
+/// A block with statistics of its computation.
 #[derive(Debug)]
 pub struct Timed {
     /// The form factors, `receivers × nodes`.
     pub block: Rows,
-    /// Σ_j F_ij of every receiver as computed, before the numbers are rounded for keeping.
+    /// Σ_j F_ij of every receiver, before entries are rounded for storage.
     pub row_sums: Vec<f64>,
-    /// Number of form factors that were computed: all, unless an older block was brought up to date.
+    /// Number of form factors that were computed: all, unless an older block was updated.
     pub computed: usize,
-    /// The same, receiver by receiver.
+    /// Number of form factors computed for each receiver.
     pub computed_by_row: Vec<u32>,
-    /// Whether an older block stays as it was, but for the numbers of its columns.
+    /// Whether the block equals the older one, except for the numbers of its columns.
     pub is_unchanged: bool,
     /// Time summed over threads.
     pub time: Duration,
 }
 
-/// Every form factor of some receivers to all elements of a world, in full. Fails if the monitor was stopped.
+/// The exact form factors of some receivers to every element of a world. Fails if the monitor was stopped.
 pub fn exact_rows(world: &World, receivers: Audience, monitor: &Monitor) -> Result<Timed> {
     let everyone: Vec<usize> = (0..world.instances()).collect();
     let request = Request::new(world, receivers, &everyone, EXACT);
     block(&request, monitor)
 }
 
-/// Compute a block on all threads. Fails if the monitor was stopped.
+/// Computes a block on all threads. Fails if the monitor was stopped.
 pub fn block(request: &Request, monitor: &Monitor) -> Result<Timed> {
     let found = Descent { request, monitor }.rows();
     if monitor.stopped() {

@@ -1,9 +1,9 @@
-//! Convex pieces of a sender as one receiver sees it, and what is left of them when pyramids are taken away. Points are
-//! relative to the receiver, so a plane of a pyramid is its normal.
+//! Convex pieces of a sender as seen by one receiver, and the subtraction of pyramids from them. Points are relative to
+//! the receiver, so a plane of a pyramid is given by its normal.
 
 use glam::DVec3;
 
-/// Convex polygons one after the other, without limits on their number or their corners.
+/// A list of convex polygons with contiguous storage.
 #[derive(Default)]
 pub struct Pieces {
     points: Vec<DVec3>,
@@ -11,13 +11,13 @@ pub struct Pieces {
 }
 
 impl Pieces {
-    /// Forget all.
+    /// Removes all polygons.
     pub fn clear(&mut self) {
         self.points.clear();
         self.ends.clear();
     }
 
-    /// Add a polygon.
+    /// Adds a polygon.
     pub fn push(&mut self, polygon: &[DVec3]) {
         self.points.extend_from_slice(polygon);
         self.ends.push(self.points.len());
@@ -30,7 +30,7 @@ impl Pieces {
     }
 }
 
-/// Takes pyramids away from polygons, and keeps the memory that this needs.
+/// Subtracts pyramids from polygons, with reusable buffers.
 #[derive(Default)]
 pub struct Scissors {
     inside: Vec<DVec3>,
@@ -39,8 +39,8 @@ pub struct Scissors {
 }
 
 impl Scissors {
-    /// Append to `outside` the pieces of `polygon` that a pyramid does not hide. Corners within `slack` of a plane count as in
-    /// it: of two pyramids that share a plane none leaves a sliver to the other.
+    /// Appends to `outside` the pieces of `polygon` that a pyramid does not hide. Corners within `slack` of a plane
+    /// count as in it, so that two pyramids that share a plane leave no sliver between them.
     pub fn subtract(
         &mut self,
         polygon: &[DVec3],
@@ -88,7 +88,7 @@ impl Scissors {
         &self.inside
     }
 
-    /// How what is inside lies to one more plane.
+    /// The side of one more plane on which the inside polygon lies.
     fn place(&mut self, plane: DVec3, slack: f64) -> Place {
         self.distances.clear();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -107,7 +107,7 @@ impl Scissors {
         }
     }
 
-    /// Cut off what lies behind the plane.
+    /// Cuts off what lies behind the plane.
     fn keep(&mut self) {
         let mut rest = std::mem::take(&mut self.rest);
         rest.clear();
@@ -134,7 +134,7 @@ impl Scissors {
     }
 }
 
-/// How a polygon lies to a plane.
+/// The side of a plane on which a polygon lies.
 enum Place {
     Inside,
     Outside,

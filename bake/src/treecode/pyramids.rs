@@ -1,5 +1,5 @@
-//! What an occluder hides from each receiver of a cluster, lane by lane: the planes through the receiver's point and the
-//! edges of the silhouette. And how a sender lies to them.
+//! The pyramids that occluders hide from each receiver of a cluster, lane by lane: planes through the receiver's point
+//! and the edges of the silhouette. Senders are classified against these planes.
 
 use crate::form_factor::wide::{LANES, Lane, Vectors, squared, towards, vectorised};
 use crate::geometry::outline::{NO_SIDE, Outline};
@@ -7,15 +7,15 @@ use crate::geometry::tolerance::IN_PLANE;
 use glam::DVec3;
 use std::ops::Range;
 
-/// The planes of one edge, a lane each: unit normal inwards, and what is added to a distance from it. An edge that is no
-/// silhouette for a lane has no normal and adds ∞ there: it restricts nothing.
+/// The planes of one edge, one a lane: unit normal inwards, and an offset added to distances. An edge that is no
+/// silhouette for a lane has a zero normal and the offset ∞, which restricts nothing.
 pub type Planes = [Lane; 4];
 
 /// The pyramids of many occluders.
 #[derive(Default)]
 pub struct Pyramids {
     planes: Vec<Planes>,
-    /// Where the planes of each occluder's each chunk of receivers end.
+    /// The end of the planes of each chunk of receivers, for one occluder after the other.
     ends: Vec<usize>,
 }
 
@@ -25,26 +25,26 @@ pub struct OccluderPyramids {
     first: u32,
 }
 
-/// How a sender lies to an occluder's pyramids.
+/// The position of a sender relative to an occluder's pyramids.
 pub struct Lies {
-    /// At most zero for lanes that have nothing hidden.
+    /// At most zero for lanes from which nothing is hidden.
     pub aside: Lane,
-    /// The planes that cut the sender, a bit each; the last bit stands for all planes from there on. Without any, and
-    /// not aside, all is hidden.
+    /// The planes that cut the sender, one bit each; the last bit stands for all planes from there on. A sender that is
+    /// cut by none and is not aside is hidden.
     pub cuts: [u64; LANES],
 }
 
-/// The bit that stands for all planes from this one on.
+/// The bit that represents all planes from this one on.
 pub const REST: usize = 63;
 
 impl Pyramids {
-    /// Forget all.
+    /// Removes all pyramids.
     pub fn clear(&mut self) {
         self.planes.clear();
         self.ends.clear();
     }
 
-    /// The pyramids that an occluder hides from the points of all lanes.
+    /// Adds the pyramids that an occluder hides from the points of all lanes.
     pub fn add(&mut self, outline: &Outline, lanes: &[Vectors]) -> OccluderPyramids {
         let first = self.ends.len();
         vectorised(
@@ -105,8 +105,7 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
             let x = (a[1][lane] * ab.z - a[2][lane] * ab.y) * sign;
             let y = (a[2][lane] * ab.x - a[0][lane] * ab.z) * sign;
             let z = (a[0][lane] * ab.y - a[1][lane] * ab.x) * sign;
-            // An edge that is seen end-on, or is no silhouette, has no length here; nor has one between corners that
-            // cutting left the same but for rounding, whose direction means nothing.
+            // Edges that are seen end-on, are no silhouette, or join corners that differ by rounding only, have no length here.
             let length = (x * x + y * y + z * z).sqrt();
             let none = length <= IN_PLANE * far2[lane];
             let inverse = if none { 0.0 } else { 1.0 / length };
@@ -118,7 +117,7 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
         planes.push(plane);
     }
     if outline.thin {
-        // Seen edge-on neither side looks, and nothing is hidden.
+        // Seen edge-on, neither side faces the receiver, and nothing is hidden.
         let mut plane = [[0.0; LANES]; 4];
         for lane in 0..LANES {
             let edge_on = looks[0][lane] == looks[1][lane];
@@ -130,8 +129,9 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
     }
 }
 
-/// How the sender with these corners (relative to each point) lies to the planes of one occluder. Corners within `slack`
-/// of a plane count as in it, so that a sender that shares an edge with the silhouette is hidden, or not, exactly.
+/// The position of the sender with these corners (relative to each point) relative to the planes of one occluder.
+/// Corners within `slack` of a plane count as in it, so that a sender that shares an edge with the silhouette is hidden
+/// either entirely or not at all.
 #[inline(always)]
 pub fn lies(planes: &[Planes], corners: &[Vectors], slack: &Lane) -> Lies {
     let mut lies = Lies { aside: [f64::INFINITY; LANES], cuts: [0; LANES] };

@@ -1,5 +1,4 @@
-//! The receivers' side of the search: an instance's elements in a hierarchy, whose leaves are flat clusters of elements
-//! that look for their senders together.
+//! The hierarchy of receivers. Its leaves are flat clusters of elements that share one search for senders.
 
 use super::request::Audience;
 use super::viewers::Viewers;
@@ -8,12 +7,12 @@ use crate::world::World;
 use equilux_formats::Element;
 use std::ops::Range;
 
-/// At most this many receivers search together: enough to share the search, few enough to share its outcome.
+/// The largest number of receivers that share a search: enough to share its cost, few enough to share its result.
 const TOGETHER: usize = 32;
 
 /// A node of the receivers' hierarchy.
 pub struct Group {
-    /// Its elements, by their numbers among the receivers.
+    /// Its elements, as indices among the receivers.
     pub elements: Range<usize>,
     /// Its halves; none if it is a flat cluster.
     pub halves: Option<Box<[Group; 2]>>,
@@ -43,8 +42,8 @@ fn halved(points: &[Element], range: Range<usize>) -> Group {
     Group { elements: range, halves }
 }
 
-/// The group of a node whose first element is `next`, which moves on past its last. Elements are numbered as the
-/// hierarchy orders them.
+/// The group of a node whose first element is `next`, which is then moved past its last element. Elements are numbered
+/// in the order of the hierarchy.
 fn group(world: &World, node: usize, next: &mut usize) -> Group {
     let start = *next;
     let Some([left, right]) = world.nodes[node].children else {
@@ -57,16 +56,16 @@ fn group(world: &World, node: usize, next: &mut usize) -> Group {
     Group { elements, halves: (!is_cluster).then(|| Box::new(halves)) }
 }
 
-/// Receivers in one plane that look the same way.
+/// Receivers in one plane that face the same way.
 pub struct Receivers {
     /// Their points.
     pub points: Points,
-    /// What the search needs to know of them.
+    /// Their extent and orientation, for the search.
     pub viewers: Viewers,
 }
 
 impl Receivers {
-    /// The receivers that a run of elements on one side of one face makes.
+    /// The receivers at the centroids of these elements, which lie on one side of one face.
     pub fn new(world: &World, elements: &[Element]) -> Self {
         let points = elements.iter().map(|e| e.centroid).collect();
         Self { points: Points::new(points, elements[0].normal), viewers: Viewers::new(world, elements) }

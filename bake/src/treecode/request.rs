@@ -1,4 +1,4 @@
-//! What a block is computed of: a world, receivers, senders, and how exactly.
+//! The specification of a block: world, receivers, senders and resolution.
 
 use super::resolution::Resolution;
 use super::revision::Revision;
@@ -11,8 +11,8 @@ use std::ops::Range;
 pub enum Audience<'a> {
     /// The elements of an instance of the world.
     Instance(usize),
-    /// Other points, at the centroids of these elements, each of which lies in a face of the world. The nearer two are in
-    /// this order the more of their search they share.
+    /// Other points, at the centroids of these elements, each of which lies in a face of the world. Points that are
+    /// close in this order share more of their search.
     Points(&'a [Element]),
 }
 
@@ -35,18 +35,18 @@ pub struct Request<'a> {
     pub receivers: Audience<'a>,
     /// The instances that send.
     pub senders: &'a [usize],
-    /// The range of nodes that columns count through.
+    /// The nodes that the columns stand for.
     pub columns: Range<usize>,
-    /// What each receiver is known to see already (of other senders), if anything.
+    /// The share of its hemisphere that each receiver is known to see of other senders, if known.
     pub already: Option<&'a [f64]>,
-    /// How exactly.
+    /// The resolution.
     pub resolution: Resolution,
-    /// The block as it was before the scene changed, if it is only to be brought up to date.
+    /// The block before the scene changed, if it is updated instead of computed from scratch.
     pub revision: Option<Revision<'a>>,
 }
 
 impl<'a> Request<'a> {
-    /// The whole block from these receivers to the elements of these instances; columns count through all nodes of the world.
+    /// The whole block from these receivers to the elements of these instances, with a column for each node of the world.
     pub fn new(
         world: &'a World,
         receivers: Audience<'a>,
@@ -57,24 +57,24 @@ impl<'a> Request<'a> {
         Self { world, receivers, senders, columns, already: None, resolution, revision: None }
     }
 
-    /// The self block of an instance, whose columns count through its own nodes: `senders` is that instance.
+    /// The self block of an instance, with a column for each of its nodes. `senders` is that instance.
     pub fn of_self(world: &'a World, senders: &'a [usize; 1], resolution: Resolution) -> Self {
         let [instance] = *senders;
         Self::new(world, Audience::Instance(instance), senders, resolution)
             .with_columns(world.nodes_of(instance))
     }
 
-    /// Columns count through these nodes.
+    /// With a column for each of these nodes.
     pub fn with_columns(self, columns: Range<usize>) -> Self {
         Self { columns, ..self }
     }
 
-    /// Each receiver is known to see this share of its hemisphere already, of other senders.
+    /// With the share of its hemisphere that each receiver is known to see of other senders.
     pub fn with_already(self, already: Option<&'a [f64]>) -> Self {
         Self { already, ..self }
     }
 
-    /// The block is an older one, brought up to date, if there is one.
+    /// With the older block to update, if there is one.
     pub fn with_revision(self, revision: Option<Revision<'a>>) -> Self {
         Self { revision, ..self }
     }

@@ -1,23 +1,23 @@
-//! How exactly a block is computed.
+//! The resolution of a block.
 
 use equilux_formats::Precision;
 
-/// How a block is computed.
+/// The accuracy of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
-    /// A cluster is taken as a whole if its form factor (at most) × its radius over its distance is below this. 0 takes
+    /// A cluster gets one entry if (an upper bound of its form factor) × radius / distance is below this. 0 allows
     /// elements only: the exact matrix.
     pub opening: f64,
-    /// How the numbers are kept.
+    /// The precision of stored form factors.
     pub precision: Precision,
 }
 
-/// Every element on its own, every number in full.
+/// Every element separately, in full precision.
 pub const EXACT: Resolution = Resolution { opening: 0.0, precision: Precision::Full };
 
 impl Resolution {
-    /// The resolution at which radiosity errs by about `tolerance`, relative to its mean, in furnished rooms; the proof
-    /// is the bound of the exchange, not this. 0 is exact.
+    /// The resolution at which the error of radiosity is about `tolerance`, relative to its mean, in furnished rooms.
+    /// It is an estimate; the error bound of the exchange is the proof. 0 is exact.
     pub fn for_tolerance(tolerance: f64) -> Self {
         if tolerance == 0.0 {
             EXACT
@@ -27,11 +27,11 @@ impl Resolution {
     }
 }
 
-/// What a row whose entries stand for clusters may miss of all it sees, at most: a search ends when a tenth of this is missing,
-/// and the rest is for rounding.
+/// Upper bound of what the sum of a row with entries for clusters may lack: a search ends when a tenth of this is
+/// missing, and the rest covers rounding.
 pub const MISSED: f64 = 1e-5;
 
-/// Opening per tolerance, found by measuring.
+/// Opening per tolerance, measured.
 const OPENING: f64 = 0.1;
 
 impl std::fmt::Display for Resolution {

@@ -1,9 +1,9 @@
-//! Brings a block up to date after a change of the scene. From what appeared or disappeared follows, for each group of
-//! receivers, which of its entries stay and which senders are searched again.
+//! Updates a block after a change of the scene. The occluders that appeared or disappeared determine, for each group of
+//! receivers, which entries stay and which senders are searched again.
 //!
-//! Light between receivers and a sender passes through their shaft, so an entry whose shaft misses everything that changed
-//! stays as it is. Senders that were hidden have no entry and may be seen now: so it is the two hierarchies that are walked
-//! down where shafts touch the change, not the entries.
+//! Light between receivers and a sender passes through their shaft, so an entry whose shaft misses every change stays.
+//! Senders that were hidden have no entry and may be visible now; therefore the update traverses both hierarchies where
+//! shafts touch the change, and not the entries.
 
 use super::viewers::Viewers;
 use crate::geometry::aabb::Aabb;
@@ -14,46 +14,46 @@ use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-/// What appeared in a scene or disappeared from it.
+/// The occluders that appeared in a scene or disappeared from it.
 #[derive(Debug)]
 pub struct Change {
     occluders: Vec<ChangedOccluder>,
-    /// For each instance whether all of its senders are looked for again: it is new, or somewhere else.
+    /// For each instance, whether all of its senders are searched again because it is new or was moved.
     pub anew: Vec<bool>,
 }
 
-/// Something convex that hides.
+/// A convex occluder that appeared or disappeared.
 #[derive(Debug)]
 struct ChangedOccluder {
     bounds: Aabb,
     corners: Vec<DVec3>,
 }
 
-/// A block to be brought up to date.
+/// A block to be updated.
 #[derive(Debug)]
 pub struct Revision<'a> {
-    /// The block as it was, of the same receivers.
+    /// The older block of the same receivers.
     pub old: &'a Rows,
-    /// The sender of each of its columns; none if it is gone.
+    /// The present sender of each of its columns; none if it was removed.
     pub senders: &'a [Option<u32>],
-    /// What changed since.
+    /// The change since then.
     pub change: &'a Change,
 }
 
 impl Change {
-    /// Nothing, in a scene of so many instances.
+    /// No change, in a scene of `instances` instances.
     pub fn none(instances: usize) -> Self {
         Self { occluders: vec![], anew: vec![false; instances] }
     }
 
-    /// Something appeared, or was there before.
+    /// Adds the occluders of an instance that appeared or disappeared.
     pub fn add(&mut self, geometry: &Geometry, placement: DAffine3) {
         let alone = World::new([(geometry, placement)]);
         let occluders = alone.occluders.all.into_iter();
         self.occluders.extend(occluders.map(|o| ChangedOccluder { bounds: o.bounds, corners: o.corners }));
     }
 
-    /// Whether there is none.
+    /// Whether nothing changed.
     pub fn is_none(&self) -> bool {
         self.occluders.is_empty() && !self.anew.contains(&true)
     }
@@ -76,20 +76,20 @@ impl Change {
 }
 
 impl Revision<'_> {
-    /// Whether the old block's numbers of senders are those of a block with these columns, as far as it has entries.
+    /// Whether every column with entries keeps its number in a block with these columns.
     pub fn is_in_place(&self, columns: &Range<usize>) -> bool {
         let stays = |column: usize| self.senders[column] == Some((columns.start + column) as u32);
         self.old.senders() == columns.len() && self.old.senders_seen().all(stays)
     }
 
-    /// The rows of some receivers that see nothing that changed, with columns that count from the node `first_column`; none
-    /// if a sender of theirs is gone.
+    /// The rows of receivers that the change does not affect, with columns that count from the node `first_column`;
+    /// none if one of their senders was removed.
     pub fn untouched(&self, first_column: usize, elements: &Range<usize>) -> Option<RowGroup> {
         let group = self.old.group_of(elements.start);
         let (columns, values) = self.old.values_of(group);
         let sender = |&column: &u32| self.senders[column as usize];
         let senders = columns.iter().map(sender).collect::<Option<Vec<u32>>>()?;
-        // Columns rise, and senders that stay are in order, but for instances that changed places.
+        // Senders are in order unless instances changed their order.
         if !senders.is_sorted() {
             return None;
         }
@@ -98,7 +98,7 @@ impl Revision<'_> {
     }
 }
 
-/// A group of rows on its way from what it was to what it will be. Values by receiver.
+/// A group of rows during its update. Values by receiver.
 #[derive(Debug)]
 pub struct Revised<'a> {
     revision: &'a Revision<'a>,
@@ -107,7 +107,7 @@ pub struct Revised<'a> {
     values: Vec<f64>,
     /// The old columns that stay, by their sender.
     kept: HashMap<u32, usize>,
-    /// Senders whose old entries do not.
+    /// Senders whose old entries were dropped.
     dropped: HashSet<u32>,
 }
 
@@ -145,7 +145,7 @@ impl<'a> Revised<'a> {
         (0..self.receivers()).map(move |i| self.values[i * width + place])
     }
 
-    /// What the receivers see by the entries that stay.
+    /// The row sums of the entries that stay.
     pub fn seen(&self) -> Vec<f64> {
         let mut seen = vec![0.0; self.receivers()];
         // In order, so that rounding does not depend on the hash.
@@ -167,7 +167,8 @@ impl<'a> Revised<'a> {
         self.dropped.is_empty() && self.kept.len() * self.receivers() == self.values.len()
     }
 
-    /// A sender has got one entry: what lies inside it gives up its own. Returns what the receivers saw by these.
+    /// Removes the entries of all nodes inside a sender that has got an entry. Returns the sum of the removed entries
+    /// for each receiver.
     pub fn cover(&mut self, world: &World, sender: u32) -> Vec<f64> {
         let mut gone = vec![0.0; self.receivers()];
         let mut open = vec![sender];
@@ -181,7 +182,7 @@ impl<'a> Revised<'a> {
         gone
     }
 
-    /// The entries that stay, each a sender with its values.
+    /// The entries that stay: senders, in order, with their values.
     pub fn entries(&self) -> Vec<(u32, Vec<f64>)> {
         let mut entries: Vec<(u32, Vec<f64>)> =
             self.kept.iter().map(|(&sender, &place)| (sender, self.column(place).collect())).collect();

@@ -1,4 +1,4 @@
-//! One flat cluster of receivers looking for its senders.
+//! The search of one flat cluster of receivers for its senders.
 
 use super::candidates::{Candidates, Verdict};
 use super::evaluate::Evaluator;
@@ -12,30 +12,29 @@ use equilux_formats::RowGroup;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-/// Rows that have come this close to one are complete; what is still missing is shared by all senders not yet met.
+/// A row whose sum lacks less than this to one is complete; the rest bounds the form factors of all remaining senders.
 const COMPLETE: f64 = 1e-12;
 
-/// The same where entries stand for clusters anyway.
+/// The same for blocks with entries for clusters.
 const NEARLY_COMPLETE: f64 = MISSED / 10.0;
 
-/// How much wider clusters open that nothing stands before, found by measuring: it gives all links the same share of the
-/// error in furnished rooms.
+/// Factor on the opening for unoccluded clusters, measured: all entries then contribute equally to the error in
+/// furnished rooms.
 const UNOCCLUDED_OPENING_FACTOR: f64 = 5.0;
 
-/// Levels of the senders' hierarchy from one narrowing of the list to the next.
+/// Levels of the senders' hierarchy between two narrowings of a list.
 const NARROW_EVERY: u32 = 2;
 
-/// Clusters behind something are tried though they promise an error up to this many times too large: often little of
-/// them is seen.
+/// Partly occluded clusters are tried up to this ratio of estimated to allowed error, because often little of them is visible.
 const MAX_TRIAL_ERROR_RATIO: f64 = 16.0;
 
-/// Share of the error that may be left to such a cluster: what little is seen of it may be unlike the rest.
+/// Share of the allowed error for such a cluster, because its visible part may differ from the rest.
 const PARTIAL_VISIBILITY_SHARE: f64 = 0.3;
 
-/// After a vain try the next is made where the promise is this much smaller.
+/// After a failed try, the estimated error must shrink to this share before the next one.
 const RETRY_SHRINK: f64 = 0.25;
 
-/// One cluster of receivers looking for its senders.
+/// The search of one cluster of receivers.
 pub struct Search<'a> {
     request: &'a Request<'a>,
     receivers: Receivers,
@@ -46,7 +45,7 @@ pub struct Search<'a> {
     columns: Vec<u32>,
     values: Vec<f64>,
     missing: Vec<f64>,
-    /// The rows as they were, if they are only to be brought up to date.
+    /// The older rows, if they are updated.
     revised: Option<Revised<'a>>,
 }
 
@@ -58,29 +57,28 @@ pub struct GroupRows {
     pub sums: Vec<f64>,
     /// Number of form factors that were computed.
     pub computed: usize,
-    /// Whether they are not what they were before.
+    /// Whether they differ from the older rows.
     pub is_changed: bool,
 }
 
-/// A sender that has not been looked at, nearest first.
+/// A sender that has not been visited; ordered nearest first.
 struct Open {
     distance: f64,
     node: u32,
     candidates: Range<usize>,
-    /// How many levels above the list was last narrowed.
+    /// Levels since the list was last narrowed.
     levels: u32,
-    /// What the last try of a cluster above promised to err by.
+    /// The estimated error of the last try of a cluster around it.
     tried: f64,
-    /// Whether it is to be looked at even if nothing that changed can matter to it: it, or a cluster around it, has lost its
-    /// entry.
+    /// Whether it must be visited even if the change cannot affect it, because it or a cluster around it has lost its entry.
     lost: bool,
 }
 
-/// What came of a sender.
+/// The result of trying to give a sender one entry.
 enum Attempt {
     /// It has its entry, or needs none.
     Done,
-    /// Too much of it is seen for one entry.
+    /// Too much of it is visible for one entry.
     TooMuch,
 }
 
@@ -160,7 +158,7 @@ impl<'a> Search<'a> {
         std::iter::successors(Some(node), |&node| world.parent_of(node)).any(|node| revised.has_dropped(node))
     }
 
-    /// Whether the entries of a sender, or that it has none, are as they were.
+    /// Whether the change cannot affect the entries of a sender.
     fn is_as_before(&self, node: u32, lost: bool) -> bool {
         let Some(revision) = self.request.revision.as_ref().filter(|_| !lost) else { return false };
         let (world, viewers) = (self.request.world, &self.receivers.viewers);
@@ -180,7 +178,7 @@ impl<'a> Search<'a> {
         let viewers = &self.receivers.viewers;
         let opening = self.request.resolution.opening;
         let error = if sender.children.is_none() { 0.0 } else { self.error(sender) };
-        // Lists are narrowed where it may decide something, and every few levels at least.
+        // Lists are narrowed where this can end the search, and at least every few levels.
         let may_end = error <= opening * UNOCCLUDED_OPENING_FACTOR.max(MAX_TRIAL_ERROR_RATIO);
         let (verdict, levels) = if may_end {
             (self.candidates.occluders(candidates, viewers, sender), 0)
@@ -207,9 +205,9 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// What an entry for a cluster may err by: its form factor, at most, times its size over its distance, times how much
-    /// the radiosity varies within the cluster, which is unknown here. The variation is larger where something stands
-    /// between, because what is hidden often has other light than what is not. Infinite if it can have no entry.
+    /// Estimated error of one entry for a cluster: an upper bound of its form factor, times its size over its distance.
+    /// The unknown variation of radiosity within the cluster is left out; it is larger behind occluders, because hidden
+    /// parts often differ in light from visible ones. Infinite if the cluster cannot have an entry.
     fn error(&self, sender: &Sender) -> f64 {
         if sender.polygon.is_empty() || self.request.resolution.opening == 0.0 {
             return f64::INFINITY;
@@ -228,7 +226,7 @@ impl<'a> Search<'a> {
         radius / (self.receivers.viewers.distance_to(sender) + radius)
     }
 
-    /// One entry for the sender, its form factor for every receiver, unless one of them is above `most`.
+    /// Adds one entry for the sender, its form factor for every receiver, unless one of them is above `most`.
     fn take(&mut self, node: u32, candidates: Range<usize>, most: f64) -> Attempt {
         let sender = &self.request.world.nodes[node as usize];
         let first = self.values.len();
@@ -250,7 +248,7 @@ impl<'a> Search<'a> {
         Attempt::Done
     }
 
-    /// What lies inside a sender that is done with has no entries of its own.
+    /// Removes older entries of senders inside a sender that is done.
     fn cover(&mut self, node: u32) {
         let Some(revised) = &mut self.revised else { return };
         let gone = revised.cover(self.request.world, node);

@@ -1,4 +1,4 @@
-//! The meshes before a sender as each receiver of a cluster sees them: made when first needed, and kept for all the
+//! The meshes in front of a sender as seen by each receiver of a cluster, computed when first needed and reused for all
 //! senders of the cluster.
 
 use super::pieces::Pieces;
@@ -10,7 +10,7 @@ use equilux_formats::FaceId;
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// All meshes, as far as they were needed.
+/// The meshes that were needed so far.
 pub struct SeenMeshes<'a> {
     world: &'a World,
     /// By occluder and receiver; an occluder that was not needed yet has no receivers.
@@ -19,7 +19,7 @@ pub struct SeenMeshes<'a> {
     before: Vec<u32>,
 }
 
-/// What of them may hide something of one sender from one receiver.
+/// The meshes that may hide parts of one sender from one receiver.
 pub struct MeshOccluders<'s> {
     world: &'s World,
     side: FaceSide,
@@ -27,23 +27,23 @@ pub struct MeshOccluders<'s> {
 }
 
 impl<'a> SeenMeshes<'a> {
-    /// None is known yet.
+    /// Without any mesh yet.
     pub fn new(world: &'a World) -> Self {
         Self { world, known: vec![], before: vec![] }
     }
 
-    /// Another sender: nothing stands before it yet.
+    /// Starts with another sender, without occluders.
     pub fn clear(&mut self) {
         self.before.clear();
     }
 
-    /// An occluder, a mesh, stands before the sender.
+    /// Adds a mesh occluder in front of the sender.
     pub fn add(&mut self, occluder: u32) {
         self.before.push(occluder);
     }
 
-    /// What may hide something of a sender from a receiver, by its number. `corners` are those of the sender relative to
-    /// the receiver's point, above its horizon; the `side` is what it lies on.
+    /// The meshes that may hide parts of a sender from the receiver number `receiver`. `corners` are those of the
+    /// sender relative to the receiver's point, above its horizon; the sender lies on `side`.
     pub fn occluders(
         &mut self,
         receivers: &Receivers,
@@ -61,7 +61,7 @@ impl<'a> SeenMeshes<'a> {
         occluders
     }
 
-    /// See to it that all before the sender are known.
+    /// Computes the meshes in front of the sender for one receiver.
     fn make(&mut self, receivers: &Receivers, receiver: usize) {
         self.known.resize_with(self.world.occluders.all.len(), Vec::new);
         for &occluder in &self.before {
@@ -86,7 +86,7 @@ impl MeshOccluders<'_> {
         self.meshes.is_empty()
     }
 
-    /// Take what they hide away from `pieces` of the sender; what was in `spare` is lost.
+    /// Removes what they hide from `pieces` of the sender. `spare` is a buffer.
     pub fn subtract_from(&self, pieces: &mut Pieces, spare: &mut Pieces) {
         for seen in &self.meshes {
             spare.clear();

@@ -1,4 +1,4 @@
-//! Receivers as seen by the search: where they are, and which way they look if they all lie on one side of one face.
+//! Extent of a group of receivers, and their orientation if they all lie on one side of one face.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Polygon, convex_hull};
@@ -7,7 +7,7 @@ use crate::world::{Sender, World};
 use equilux_formats::{Element, FaceId};
 use glam::DVec3;
 
-/// Some receivers, of which only the hull matters.
+/// The convex hull of a group of receivers.
 #[derive(Debug)]
 pub struct Viewers {
     /// Box around their points.
@@ -16,7 +16,7 @@ pub struct Viewers {
     pub diameter: f64,
     /// Corners of the convex hull of their points, or of the box.
     pub hull: Polygon,
-    /// Where they look, if all look the same way from one face.
+    /// The side of the face they lie on, if it is the same for all.
     pub flat: Option<Flat>,
 }
 
@@ -57,7 +57,7 @@ impl Viewers {
         (other.low - own.high).max(own.low - other.high).max(DVec3::ZERO).length()
     }
 
-    /// Whether a sender lies wholly below the horizon, in the viewers' plane, or turns its back on all of them.
+    /// Whether a sender lies wholly below the horizon, in the viewers' plane, or faces away from all of them.
     pub fn cannot_see(&self, sender: &Sender, world: &World) -> bool {
         let origin = self.hull[0];
         let (centre, half) = (sender.bounds.centre(), sender.bounds.size() * 0.5);
