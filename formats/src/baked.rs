@@ -1,4 +1,4 @@
-//! A part after baking: its geometry, its own block of form factors, and its light when nothing arrives from outside.
+//! A baked part: its geometry, its self block of form factors, and its local equilibrium.
 
 use crate::geometry::{Geometry, Optics, Tints};
 use crate::part::{LocalSolver, Material};
@@ -6,7 +6,7 @@ use crate::rgb::Rgb;
 use crate::rows::Rows;
 use serde::{Deserialize, Serialize};
 
-/// A part with everything that can be computed without knowing the scene.
+/// A part with all results that do not depend on the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedPart {
     /// The part's name.
@@ -15,37 +15,36 @@ pub struct BakedPart {
     pub geometry: Geometry,
     /// Reflectance and emission, one row an element.
     pub optics: Optics,
-    /// What textures make of these, one row an element.
+    /// The factors that textures multiply these by, one row an element.
     pub tints: Tints,
-    /// The materials, for those who draw or export the part.
+    /// The materials, for rendering and export.
     pub materials: Vec<Material>,
     /// F_kk with nothing but the part itself in the way, `elements × elements`.
     pub self_block: Rows,
-    /// Its light on its own.
+    /// Its local equilibrium.
     pub local: LocalEquilibrium,
 }
 
 /// The part's own solution with nothing arriving from outside: (I − ρF_kk) B = E.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LocalEquilibrium {
-    /// The solver that found it and that the exchange will use again.
+    /// The solver that computed it, which the exchange also uses.
     pub solver: LocalSolver,
     /// Radiosity B, W/m², linear RGB, one row an element.
     pub radiosity: Vec<Rgb>,
     /// The factors of I − ρF_kk; only the direct solver keeps them.
     pub factors: Option<Factors>,
-    /// How the part answers light from outside.
+    /// The part's responses to light from outside.
     pub answers: BoundaryResponses,
 }
 
-/// How a part answers light that arrives from outside: what an exchange needs to know of it to foresee where light will
-/// settle when it goes to and fro between parts.
+/// A part's responses to light from outside. The exchange uses them as a coarse space, to accelerate its convergence.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BoundaryResponses {
-    /// The part's radiosity under some simple lights from outside, one row an element; orthonormal by area in each channel:
-    /// Σ_i A_i a_i b_i is 1 for a = b, else 0. A channel that has fewer than the others has zeros in their place.
+    /// The part's radiosity under some simple lights from outside, one vector a light, one row an element; orthonormal
+    /// by area in each channel: Σ_i A_i a_i b_i is 1 for a = b, else 0. Vectors that a channel lacks are zero there.
     pub radiosity: Vec<Vec<Rgb>>,
-    /// Σ_i A_i a_i ((I − ρF_kk) b)_i for each pair of them, by rows.
+    /// Σ_i A_i a_i ((I − ρF_kk) b)_i for each pair of them, row-major.
     pub matrix: Vec<Rgb>,
     /// The share of uniform light from outside that leaves the part again.
     pub returned: Rgb,
@@ -71,7 +70,7 @@ pub struct Lu {
     pub rows: Vec<u32>,
 }
 
-/// What a part file holds: all that depends on geometry and settings alone, so a repaint keeps it.
+/// The contents of a part file: results that depend on geometry and settings only, so that repainting keeps them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedGeometry {
     /// Elements and faces, in the part's own coordinates.
@@ -80,11 +79,11 @@ pub struct BakedGeometry {
     pub self_block: Rows,
 }
 
-/// What a light file holds: all that depends on reflectance and emission too.
+/// The contents of a light file: results that also depend on reflectance and emission.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BakedLight {
     /// Reflectance and emission, one row an element.
     pub optics: Optics,
-    /// The part's light on its own.
+    /// The part's local equilibrium.
     pub local: LocalEquilibrium,
 }

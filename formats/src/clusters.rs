@@ -1,7 +1,7 @@
-//! The hierarchy of a part's elements: clusters that stand for many elements where these are small and far.
+//! The hierarchy of a part's elements: clusters represent groups of small, distant elements.
 //!
 //! Nodes are numbered: first the elements, then the clusters, every cluster before the clusters inside it. The first
-//! cluster holds everything.
+//! cluster contains all elements.
 
 use crate::rgb::Rgb;
 
@@ -16,8 +16,8 @@ pub struct ClusterTree {
 }
 
 impl ClusterTree {
-    /// The tree over elements of the given areas (m²) from the two children of each cluster. Fails with a reason if it
-    /// is no such tree.
+    /// The tree over elements of the given areas (m²) from the two children of each cluster. Fails with a reason if
+    /// these do not form a tree.
     pub fn new(element_areas: &[f64], children: Vec<[u32; 2]>) -> Result<Self, String> {
         let elements = element_areas.len();
         let nodes = elements + children.len();
@@ -41,8 +41,8 @@ impl ClusterTree {
         Ok(Self { children, areas, parents })
     }
 
-    /// One tree over several: their elements one after the other, then clusters that hold the trees, then the trees' own.
-    /// Empty trees add nothing.
+    /// One tree over several: their elements one after the other, then clusters that join the trees, then the trees'
+    /// own clusters. Empty trees add nothing.
     pub fn joined(trees: &[&Self]) -> Self {
         let trees: Vec<&&Self> = trees.iter().filter(|tree| tree.elements() > 0).collect();
         let areas: Vec<f64> = trees.iter().flat_map(|tree| &tree.areas[..tree.elements()]).copied().collect();
@@ -78,7 +78,7 @@ impl ClusterTree {
         self.areas.len()
     }
 
-    /// The node that holds everything; none in an empty tree.
+    /// The root node; none in an empty tree.
     pub fn root(&self) -> Option<usize> {
         (!self.areas.is_empty()).then(|| if self.children.is_empty() { 0 } else { self.elements() })
     }
@@ -104,7 +104,7 @@ impl ClusterTree {
         self.areas[node]
     }
 
-    /// Append to `nodes` the value of every node: the elements' own, then the area-weighted mean of each cluster.
+    /// Appends to `nodes` the value of every node: those of the elements, then the area-weighted mean of each cluster.
     pub fn append_means(&self, elements: &[Rgb], nodes: &mut Vec<Rgb>) {
         assert_eq!(elements.len(), self.elements(), "a value an element");
         let base = nodes.len();
@@ -119,7 +119,7 @@ impl ClusterTree {
         }
     }
 
-    /// Append to `nodes` how far the values of the elements inside each node are from its mean, at most; nothing for
+    /// Appends to `nodes` an upper bound of the deviation of element values inside each node from its mean; zero for
     /// elements. `means` holds the values of all nodes.
     pub fn append_spreads(&self, means: &[Rgb], nodes: &mut Vec<Rgb>) {
         let mut ranges: Vec<[Rgb; 2]> = means.iter().map(|&value| [value; 2]).collect();
@@ -138,7 +138,7 @@ impl ClusterTree {
         nodes
     }
 
-    /// Call `visit` with every element of a node and its share of the node's area.
+    /// Calls `visit` with every element of a node and its share of the node's area.
     pub fn spread(&self, node: usize, visit: &mut impl FnMut(usize, f64)) {
         let mut open = vec![node];
         while let Some(inner) = open.pop() {

@@ -1,8 +1,7 @@
-//! The one file format: a fixed header, two messages, then arrays, each compressed on its own. `FORMAT.md` draws it.
+//! The file format: a fixed header, two messages, then arrays, each compressed separately. `FORMAT.md` describes it.
 //!
-//! Comes in: metadata and slices of numbers. Goes out: the same, or an [`Error`](crate::Error). Every byte is covered
-//! by a checksum that is compared before the byte is believed, so a file that is damaged, foreign or of another
-//! version is never mistaken for a good one.
+//! Files hold metadata and arrays of numbers. Every byte is covered by a checksum that is verified before the byte is
+//! used, so a file that is damaged, foreign or of another version results in an [`Error`](crate::Error).
 
 mod frame;
 mod reader;
@@ -22,10 +21,10 @@ pub const FORMAT_VERSION: u32 = 4;
 
 const MAGIC: [u8; 8] = *b"EQUILUX\0";
 const HEADER_LENGTH: usize = 56;
-/// Far above any manifest; keeps a crafted length from asking for memory.
+/// Far above any manifest; limits the memory that a crafted length can allocate.
 const MESSAGES_LIMIT: u64 = 1 << 24;
 
-/// What a file holds.
+/// The contents of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// Geometry and form factors of a part.
@@ -34,11 +33,11 @@ pub enum Kind {
     Light,
     /// A block of form factors between two instances.
     Coupling,
-    /// Only a manifest: what something was last made from.
+    /// Only a manifest: the latest inputs of a named result.
     Manifest,
     /// The light of a scene.
     Solution,
-    /// Only a manifest and a key: what was made from something else, and would be the same.
+    /// Only a manifest and a key: the result of these inputs equals the one under that key.
     Alias,
 }
 
@@ -58,7 +57,7 @@ impl Kind {
         }
     }
 
-    /// The word that file names and messages use.
+    /// The name in file names and messages.
     pub fn noun(self) -> &'static str {
         match self {
             Self::Part => "part",
@@ -71,7 +70,7 @@ impl Kind {
     }
 }
 
-/// A number that arrays may hold.
+/// A type of numbers in arrays.
 pub trait Number: bytemuck::Pod {
     /// Its name in the index.
     const NAME: &'static str;
@@ -86,7 +85,7 @@ macro_rules! number {
 }
 number!(u16 u32 u64 f32 f64);
 
-/// The first of the two messages. The second is the metadata, whose type only the reader of that kind knows.
+/// The first of the two messages. The second is the metadata, whose type depends on the kind.
 #[derive(Debug, Serialize, Deserialize)]
 struct Index {
     manifest: Manifest,

@@ -1,11 +1,11 @@
-//! The one error type: a problem that a person can act on, or an early end that was requested.
+//! The error type: a problem that the user can solve, or a requested stop.
 
 use std::path::{Path, PathBuf};
 
-/// A result whose error a person can act on.
+/// A result with an [`Error`].
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why there is no result. Never a fault of the program: those panic.
+/// Why there is no result. Internal errors panic instead.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Error {
     /// Something is wrong with an input or with the environment.
@@ -16,22 +16,22 @@ pub enum Error {
     Stopped,
 }
 
-/// Something wrong with a file or folder: what was found, what was expected, and what to do about it.
+/// A problem with a file or folder: what was found, what was expected, and the remedy.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}: {found}; expected {expected}; {remedy}", file.display())]
 pub struct Problem {
-    /// The file (or folder) the problem lies in.
+    /// The file or folder.
     pub file: PathBuf,
-    /// What should have been there.
+    /// What was expected.
     pub expected: String,
-    /// What was there.
+    /// What was found.
     pub found: String,
-    /// What to do now, as an imperative.
+    /// The remedy, as an imperative.
     pub remedy: String,
 }
 
 impl Error {
-    /// A problem with `file`, in the order in which it is read aloud.
+    /// A problem with `file`; arguments are in the order of the message.
     pub fn new(
         file: impl AsRef<Path>,
         found: impl Into<String>,

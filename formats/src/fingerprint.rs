@@ -1,7 +1,7 @@
-//! One manifest says what a result was made from. It gives both the key under which the result is cached and the
-//! sentence that says why it has to be made again, so the two cannot drift apart.
+//! Manifests list the inputs of a result. Both the cache key of the result and the reason why it is computed again
+//! derive from the manifest, so the two are always consistent.
 //!
-//! Comes in: labelled values and digests of content, never times or file names. Goes out: keys and sentences.
+//! A manifest consists of labelled values and digests of content, never times or file names.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -10,12 +10,12 @@ use std::fmt;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Digest([u8; 32]);
 
-/// The hash of a manifest: the name under which what was made from it is cached.
+/// The hash of a manifest: the cache key of its result.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Key(Digest);
 
 impl Digest {
-    /// The digest that is displayed like this.
+    /// The digest with this hexadecimal form.
     pub(crate) fn from_hex(text: &str) -> Option<Self> {
         blake3::Hash::from_hex(text).ok().map(|hash| Self(*hash.as_bytes()))
     }
@@ -48,7 +48,7 @@ impl fmt::Debug for Key {
 impl std::str::FromStr for Key {
     type Err = ();
 
-    /// Reads what is displayed.
+    /// Parses the displayed form.
     fn from_str(text: &str) -> Result<Self, ()> {
         Digest::from_hex(text).map(Self).ok_or(())
     }
@@ -60,12 +60,12 @@ impl From<Key> for Digest {
     }
 }
 
-/// Content on its way to a [`Digest`]. Each piece is hashed with its length, so that `ab, c` and `a, bc` differ.
+/// Content to be hashed. Each piece is hashed with its length, so that `ab, c` and `a, bc` differ.
 #[derive(Debug, Clone, Default)]
 pub struct Content(blake3::Hasher);
 
 impl Content {
-    /// Nothing yet.
+    /// Empty content.
     pub fn new() -> Self {
         Self::default()
     }
@@ -78,19 +78,19 @@ impl Content {
         self
     }
 
-    /// Adds numbers. −0 counts as 0, for the two are equal and mean the same place.
+    /// Adds numbers. −0 counts as 0, because the two are equal.
     pub fn f64s(self, values: &[f64]) -> Self {
         let unsigned_zeros: Vec<f64> = values.iter().map(|value| value + 0.0).collect();
         self.bytes(bytemuck::cast_slice::<f64, u8>(&unsigned_zeros))
     }
 
-    /// The digest of all that was added, in its order.
+    /// The digest of everything added, in order.
     pub fn digest(&self) -> Digest {
         Digest(*self.0.finalize().as_bytes())
     }
 }
 
-/// What a result was made from, as an ordered list of labelled entries.
+/// The inputs of a result, as an ordered list of labelled entries.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Manifest {
     entries: Vec<Entry>,
@@ -102,8 +102,8 @@ struct Entry {
     value: Value,
 }
 
-/// A setting is short enough to be told, a detail is not; of larger content only a digest is kept. A remark explains a digest in
-/// a few words and is not part of the key.
+/// Settings are short enough for messages, details are not; larger content is a digest. A remark explains a digest in a
+/// few words and is not part of the key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum Value {
@@ -124,7 +124,7 @@ impl Manifest {
         self.with(label.into(), Value::Setting(value.to_string()))
     }
 
-    /// Adds a setting that is too long to be told, but may be asked for by [`Manifest::details`]. Panics when the label is taken.
+    /// Adds a setting that is too long for messages, but available from [`Manifest::details`]. Panics when the label is taken.
     pub fn detail(self, label: impl Into<String>, value: impl fmt::Display) -> Self {
         self.with(label.into(), Value::Detail(value.to_string()))
     }
@@ -143,7 +143,7 @@ impl Manifest {
         })
     }
 
-    /// Whether the two differ in details at most.
+    /// Whether the two differ in details only, or not at all.
     pub fn is_alike(&self, other: &Self) -> bool {
         let rest = |manifest: &Self| -> Vec<Entry> {
             let entries = manifest.entries.iter().filter(|entry| !matches!(entry.value, Value::Detail(_)));
@@ -167,7 +167,7 @@ impl Manifest {
         self.entries.iter().find(|entry| entry.label == label).map(|entry| &entry.value)
     }
 
-    /// The key of whatever is made from exactly this.
+    /// The key of the result of exactly these inputs.
     pub fn key(&self) -> Key {
         let content = self.entries.iter().fold(Content::new(), |content, entry| {
             let labelled = |content: Content| content.bytes(&entry.label);
@@ -181,7 +181,7 @@ impl Manifest {
         Key(content.digest())
     }
 
-    /// Why a result made from `old` does not serve: one clause an entry that differs, or nothing if the keys agree.
+    /// Why the result of `old` cannot be reused: one clause for each entry that differs, or none if the keys are equal.
     pub fn difference(&self, old: &Manifest) -> Option<String> {
         if self.key() == old.key() {
             return None;
@@ -189,7 +189,7 @@ impl Manifest {
         let differing = self.entries.iter().filter_map(|entry| entry.clause(old.value(&entry.label)));
         let gone = old.entries.iter().filter(|entry| self.value(&entry.label).is_none());
         let clauses: Vec<_> = differing.chain(gone.map(|entry| format!("{} is gone", entry.label))).collect();
-        // The key depends on the order too, and a new key without a reason would be a riddle.
+        // The key also depends on the order, and every new key needs a reason.
         Some(if clauses.is_empty() { "the order of the inputs changed".into() } else { clauses.join("; ") })
     }
 }

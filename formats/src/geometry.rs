@@ -24,7 +24,7 @@ impl Corners {
         Self { points, count: 4 }
     }
 
-    /// The corners as twelve coordinates; a triangle's last corner comes twice.
+    /// The corners as twelve coordinates; a triangle's last corner is repeated.
     pub(crate) fn padded(&self) -> [f64; 12] {
         std::array::from_fn(|i| self.points[i / 3][i % 3])
     }
@@ -102,7 +102,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// The element on `corners`, with normal, centroid and area worked out. The area must be above zero.
+    /// The element on `corners`, with its normal, centroid and area. The area must be above zero.
     pub fn new(corners: Corners, material: MaterialId, face: FaceId) -> Self {
         let double_area = corners.double_area_vector();
         Self {
@@ -133,7 +133,7 @@ impl Face {
     }
 }
 
-/// All that form factors depend on.
+/// Everything that form factors depend on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Geometry {
     /// The elements; their order is the order of every per-element array.
@@ -155,13 +155,13 @@ pub struct Tints {
 }
 
 impl Tints {
-    /// Those of so many elements without textures.
+    /// The tints of `elements` elements without textures.
     pub fn plain(elements: usize) -> Self {
         Self { reflectance: vec![Rgb::WHITE; elements], emission: vec![Rgb::WHITE; elements] }
     }
 }
 
-/// What form factors do not depend on: reflectance and emission, one row an element, linear RGB.
+/// Reflectance and emission, one row an element, linear RGB. Form factors do not depend on them.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Optics {
     /// Diffuse reflectance ρ, 0..1.

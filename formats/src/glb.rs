@@ -1,7 +1,7 @@
 //! The binary container of glTF, `.glb`: a JSON chunk and a binary chunk. glTF 2.0 specification, §4.4.
 //!
-//! Reading skips chunks of other types and bytes after the stated length, as the specification asks. Own code, as the
-//! `gltf` crate refuses such files.
+//! Reading skips chunks of other types and bytes after the stated length, as the specification requires. The `gltf`
+//! crate is not used because it refuses such files.
 
 use std::io::{self, Write};
 
@@ -20,8 +20,8 @@ const HEADER: usize = 12;
 /// Bytes before the contents of a chunk: length, type.
 const CHUNK_HEADER: usize = 8;
 
-/// Writes a container of two chunks to `out`, each filled up to a multiple of four bytes: the JSON with blanks, the binary
-/// chunk with zeros. Fails as `out` does, or if the file would have 4 GiB or more.
+/// Writes a container of two chunks to `out`, each padded to a multiple of four bytes: the JSON with spaces, the binary
+/// chunk with zeros. Fails if `out` fails, or if the file would have 4 GiB or more.
 pub fn write(out: &mut (impl Write + ?Sized), json: &[u8], binary: &[u8]) -> io::Result<()> {
     let length = HEADER
         + [json, binary].map(|chunk| CHUNK_HEADER + chunk.len().next_multiple_of(4)).iter().sum::<usize>();
@@ -46,7 +46,8 @@ pub fn file(json: &[u8], binary: &[u8]) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Splits `bytes`, which are JSON unless they start as a container does. Fails with what is wrong with the container.
+/// Splits `bytes` into chunks; bytes that do not start with a container's magic are JSON. Fails with a description of
+/// what is wrong with the container.
 pub fn split(bytes: &[u8]) -> Result<Chunks<'_>, String> {
     if !bytes.starts_with(b"glTF") {
         // The specification allows readers to ignore a byte order mark.

@@ -1,7 +1,7 @@
-//! What Equilux stores and passes on, without any physics.
+//! Data types of Equilux and their storage, without physics.
 //!
 //! Data flows glTF → [`Part`] → [`BakedPart`] → [`Scene`] → blocks of [`Rows`] → [`Solution`]. `bake` and `assemble`
-//! compute on these types; this crate only says what they are and how they lie on disk.
+//! compute on these types; this crate defines the types and their file formats.
 
 mod baked;
 mod clusters;

@@ -1,4 +1,4 @@
-//! A part as it was authored: flat convex surfaces with materials, in the part's own coordinates.
+//! Parts before baking: flat convex surfaces with materials, in the part's own coordinates.
 
 use crate::geometry::Corners;
 use crate::ids::MaterialId;
@@ -7,7 +7,7 @@ use crate::texture::{TexturedTriangle, Textures};
 use glam::{DAffine3, DVec2};
 use serde::{Deserialize, Serialize};
 
-/// What is baked once and placed many times. The importer guarantees: every coordinate is finite, every surface is
+/// A unit that is baked once and placed many times. The importer guarantees: every coordinate is finite, every surface is
 /// planar and convex with an area above zero, no two surfaces coincide with the same orientation, and every material
 /// id is valid.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,11 +18,11 @@ pub struct Part {
     pub surfaces: Vec<Surface>,
     /// The materials that the surfaces name.
     pub materials: Vec<Material>,
-    /// How colours vary over those surfaces on which they do, by the triangles of the source mesh.
+    /// The triangles of the source mesh with textures or vertex colours.
     pub textured: Vec<TexturedTriangle>,
-    /// Element size asked for by the file's author (`extras.element_size`), metres.
+    /// Element size from the file (`extras.element_size`), metres.
     pub element_size: Option<f64>,
-    /// Local solver asked for by the file's author (`extras.local_solver`).
+    /// Local solver from the file (`extras.local_solver`).
     pub local_solver: Option<LocalSolver>,
 }
 
@@ -33,10 +33,10 @@ pub struct Surface {
     pub corners: Corners,
     /// Its material.
     pub material: MaterialId,
-    /// Where its corners lie in the author's lightmap (TEXCOORD_1), if there is one; (0, 0) is the upper left corner. A
-    /// triangle's last comes twice. One affine map takes all corners there.
+    /// Lightmap coordinates of its corners (TEXCOORD_1), if there are any; (0, 0) is the upper left corner. A
+    /// triangle's last is repeated. They are an affine function of the corners.
     pub lightmap: Option<[DVec2; 4]>,
-    /// Whether its back looks into a closed shell in which nothing shines: it is dark, and has no elements even where the
+    /// Whether its back faces into a closed shell without light inside: it is dark, and has no elements even if the
     /// material is double-sided.
     pub back_hidden: bool,
 }
@@ -49,7 +49,7 @@ impl Part {
 }
 
 impl Surface {
-    /// A surface without a place in a lightmap.
+    /// A surface without lightmap coordinates.
     pub fn new(corners: Corners, material: MaterialId) -> Self {
         Self { corners, material, lightmap: None, back_hidden: false }
     }
@@ -67,14 +67,15 @@ impl Surface {
         Self { corners: self.corners.flipped(), lightmap, ..*self }
     }
 
-    /// The surface after `placement`. A mirror turns the order round, so that corners stay counter-clockwise from the front.
+    /// The surface after `placement`. A mirrored placement reverses the order of the corners, so that they stay
+    /// counter-clockwise from the front.
     pub fn placed(&self, placement: DAffine3) -> Self {
         let placed = Self { corners: self.corners.map(|corner| placement.transform_point3(corner)), ..*self };
         if placement.matrix3.determinant() < 0.0 { placed.flipped() } else { placed }
     }
 }
 
-/// What a surface does with light. Linear RGB, BT.709 primaries.
+/// A material. Linear RGB, BT.709 primaries.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
     /// The material's name in the file, or empty.
@@ -85,11 +86,11 @@ pub struct Material {
     pub emission: Rgb,
     /// Whether the back reflects and emits as the front does; a one-sided surface is black on its back.
     pub double_sided: bool,
-    /// What both vary by.
+    /// The textures on both.
     pub textures: Textures,
 }
 
-/// The solver of a part's own equilibrium. The answer does not depend on it.
+/// The solver of a part's local equilibrium. The result does not depend on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]

@@ -1,4 +1,4 @@
-//! Light in three channels.
+//! Quantities in three colour channels.
 
 use serde::{Deserialize, Serialize};
 use std::iter::Sum;
@@ -10,10 +10,10 @@ use std::ops::{Add, AddAssign, Deref, DerefMut, Div, Mul, Sub};
 pub struct Rgb(pub [f64; 3]);
 
 impl Rgb {
-    /// No light.
+    /// Zero in all channels.
     pub const BLACK: Self = Self([0.0; 3]);
 
-    /// All that arrives, as a reflectance.
+    /// One in all channels: as a reflectance, all light.
     pub const WHITE: Self = Self([1.0; 3]);
 
     /// The same in all channels.
@@ -21,17 +21,17 @@ impl Rgb {
         Self([value; 3])
     }
 
-    /// All channels of several lights, one light after the other.
+    /// The channels of several values, one value after the other.
     pub fn channels(lights: &[Self]) -> Vec<f64> {
         lights.iter().flat_map(|light| light.0).collect()
     }
 
-    /// Each channel from its number.
+    /// The value of `channel` for each channel number, 0 to 2.
     pub fn from_fn(channel: impl FnMut(usize) -> f64) -> Self {
         Self(std::array::from_fn(channel))
     }
 
-    /// Each channel from what it is.
+    /// The value of `map` for each channel.
     pub fn map(self, channel: impl FnMut(f64) -> f64) -> Self {
         Self(self.0.map(channel))
     }
@@ -51,12 +51,12 @@ impl Rgb {
         Self::from_fn(|c| self[c].min(other[c]))
     }
 
-    /// The brightest channel; 0 if none is above it.
+    /// The largest channel, at least 0.
     pub fn brightest(self) -> f64 {
         self.0.into_iter().fold(0.0, f64::max)
     }
 
-    /// Luminance in the light's unit (ITU-R BT.709, item 3.2).
+    /// Luminance in the unit of the value (ITU-R BT.709, item 3.2).
     pub fn luminance(self) -> f64 {
         let Self([red, green, blue]) = self;
         0.2126 * red + 0.7152 * green + 0.0722 * blue

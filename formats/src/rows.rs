@@ -12,19 +12,19 @@ use products::products;
 pub use row_sums::RowSumDefect;
 use serde::{Deserialize, Serialize};
 
-/// How the numbers of a block are kept.
+/// The precision of the stored numbers of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Precision {
     /// f64, as computed.
     Full,
-    /// f32: each entry and each sum of entries is kept to [`SINGLE_ROUNDING`] of itself.
+    /// f32: the relative error of each entry and each sum of entries is at most [`SINGLE_ROUNDING`].
     Single,
 }
 
-/// How far an entry that is kept as f32 may be off, relative: half a unit in the last place.
+/// Largest relative error of an entry stored as f32: half a unit in the last place.
 pub const SINGLE_ROUNDING: f64 = f32::EPSILON as f64 / 2.0;
 
-/// Rows of neighbouring receivers before they go into a block.
+/// Rows of neighbouring receivers, from which blocks are built.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RowGroup {
     /// The senders that any of the receivers sees.
@@ -44,7 +44,7 @@ pub struct Rows {
     values: Values,
 }
 
-/// Where a group begins.
+/// The start of a group.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Extent {
     receiver: usize,
@@ -58,7 +58,7 @@ enum Values {
     Single(Vec<f32>),
 }
 
-/// A block as plain arrays: sizes of the groups, their columns, and the numbers in one of two forms.
+/// A block as plain arrays: sizes of the groups, their columns, and the numbers in one of two precisions.
 pub(crate) struct Arrays<'a> {
     pub sizes: Vec<u32>,
     pub columns: &'a [u32],
@@ -67,7 +67,7 @@ pub(crate) struct Arrays<'a> {
 }
 
 impl Rows {
-    /// A block with `senders` columns from rows that share nothing, each a list of (sender, form factor).
+    /// A block with `senders` columns from separate rows, each a list of (sender, form factor).
     pub fn from_rows(senders: usize, rows: impl IntoIterator<Item = Vec<(u32, f64)>>) -> Self {
         let group = |row: Vec<(u32, f64)>| {
             let (columns, values) = row.into_iter().unzip();
@@ -132,7 +132,7 @@ impl Rows {
         self.groups[self.groups.len() - 1].value
     }
 
-    /// How the numbers are kept.
+    /// The precision of the numbers.
     pub fn precision(&self) -> Precision {
         match self.values {
             Values::Full(_) => Precision::Full,
@@ -140,7 +140,7 @@ impl Rows {
         }
     }
 
-    /// Bytes the block takes in memory.
+    /// Size of the block in memory, bytes.
     pub fn bytes(&self) -> usize {
         let values = match &self.values {
             Values::Full(values) => values.len() * 8,
@@ -149,7 +149,7 @@ impl Rows {
         self.groups.len() * size_of::<Extent>() + self.columns.len() * 4 + values
     }
 
-    /// No entry of a row is further than this from what was computed, relative.
+    /// Upper bound of the relative rounding error of stored entries.
     pub fn rounding(&self) -> f64 {
         match self.precision() {
             Precision::Full => 0.0,
@@ -157,7 +157,7 @@ impl Rows {
         }
     }
 
-    /// Number of groups; groups are independent and together give all rows in order.
+    /// Number of groups. Groups are independent, and contain all rows in order.
     pub fn groups(&self) -> usize {
         self.groups.len() - 1
     }
@@ -188,12 +188,12 @@ impl Rows {
         pairs.filter(|&(_, value)| value != 0.0)
     }
 
-    /// The senders that any receiver sees, in no order, some of them often.
+    /// The senders that any receiver sees, in no order and with repetitions.
     pub fn senders_seen(&self) -> impl Iterator<Item = usize> + '_ {
         self.columns.iter().map(|&column| column as usize)
     }
 
-    /// Σ_j F_ij: the fraction of receiver i's view that the senders fill.
+    /// Σ_j F_ij: the fraction of receiver i's hemisphere that the senders fill.
     pub fn row_sum(&self, receiver: usize) -> f64 {
         let range = self.range_of(receiver);
         match &self.values {
@@ -321,7 +321,7 @@ impl Rows {
     }
 }
 
-/// Add a row's values times its weights to the sums of its columns.
+/// Adds a row's values, times its weight, to the sums of its columns.
 fn spread<const N: usize>(row: impl Iterator<Item = f64>, weight: &[f64; N], sums: &mut [[f64; N]]) {
     for (value, sums) in row.zip(sums) {
         sums.iter_mut().zip(weight).for_each(|(sum, weight)| *sum += value * weight);

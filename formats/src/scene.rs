@@ -1,4 +1,4 @@
-//! A scene: parts, where they stand, who looks, and what lights are not surfaces.
+//! A scene: parts, instances, cameras, and punctual lights.
 
 use crate::ids::{MaterialId, PartId};
 use crate::part::{Material, Part};
@@ -6,14 +6,14 @@ use crate::rgb::Rgb;
 use glam::{DAffine3, DVec3};
 use std::path::PathBuf;
 
-/// Parts and their instances, as the importer found them. Scene coordinates are the file's, moved by `origin`.
+/// An imported scene. Scene coordinates are those of the file relative to `origin`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// The file's stem.
     pub name: String,
     /// The file it came from.
     pub file: PathBuf,
-    /// Every file that was read, the scene's own first: what a build tool must watch.
+    /// Every file that was read, the scene's own first: the dependencies for a build tool.
     pub sources: Vec<PathBuf>,
     /// The distinct parts.
     pub parts: Vec<Part>,
@@ -23,13 +23,13 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Lights that are not surfaces.
     pub lights: Vec<PunctualLight>,
-    /// Where the origin of scene coordinates lies in the file's coordinates, metres: zero, unless the scene is far from there.
+    /// The origin of scene coordinates in the file's coordinates, metres: zero, unless the scene is far from the file's origin.
     pub origin: DVec3,
-    /// What f32 leaves undecided of the scene's coordinates in its file, metres: the distance from the largest to the next.
+    /// The f32 step of the scene's coordinates in its file, metres: the distance from the largest to the next.
     pub coordinate_step: f64,
-    /// Number of closed shells of two-sided surfaces whose inner sides were hidden, as nothing shines inside.
+    /// Number of closed shells of two-sided surfaces whose inner sides were hidden, because there is no light inside.
     pub hidden_shells: usize,
-    /// What was ignored, dropped or repaired on the way in, one sentence each.
+    /// What the importer ignored, dropped or repaired, one sentence each.
     pub notes: Vec<String>,
 }
 
@@ -38,18 +38,18 @@ pub struct Scene {
 pub struct Instance {
     /// The root node's name.
     pub name: String,
-    /// The part that stands there.
+    /// The part.
     pub part: PartId,
-    /// Part coordinates → scene coordinates: a rotation, perhaps mirrored, uniformly scaled, and moved. Anything else
-    /// is another part, so form factors are the same in every instance.
+    /// Part coordinates → scene coordinates: a similarity, which may mirror. Other transforms make another part, so
+    /// form factors are the same in every instance.
     pub placement: DAffine3,
-    /// Factor on the part's emission in this place (`extras.emission_scale`), 1 unless told.
+    /// Factor on the part's emission in this instance (`extras.emission_scale`), by default 1.
     pub emission_scale: f64,
-    /// What the part's materials do with light in this place, where that is told (`extras.materials`).
+    /// Changed materials of this instance (`extras.materials`).
     pub repainted: Vec<Repainted>,
 }
 
-/// What a material of a part does with light in one place.
+/// The changed reflectance and emission of a part's material in one instance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repainted {
     /// The material.
@@ -61,12 +61,12 @@ pub struct Repainted {
 }
 
 impl Instance {
-    /// The factor of the placement on lengths: so many metres of the scene are one unit of the part's coordinates.
+    /// The scale of the placement: metres of the scene for one unit of the part's coordinates.
     pub fn scale(&self) -> f64 {
         self.placement.matrix3.determinant().abs().cbrt()
     }
 
-    /// The part's `materials` as they are in this place, emission scale included.
+    /// The part's `materials` as changed by this instance, including the emission scale.
     pub fn materials(&self, materials: &[Material]) -> Vec<Material> {
         let mut here = materials.to_vec();
         for Repainted { material, reflectance, emission } in &self.repainted {
@@ -78,7 +78,7 @@ impl Instance {
     }
 }
 
-/// A perspective camera that looks along −Z with +Y up, as glTF has it.
+/// A perspective camera that looks along −Z with +Y up, as in glTF.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
     /// The node's name.
@@ -87,7 +87,7 @@ pub struct Camera {
     pub placement: DAffine3,
     /// Vertical field of view, radians.
     pub vertical_fov: f64,
-    /// Width over height, where the file gives one.
+    /// Width over height, if the file has it.
     pub aspect: Option<f64>,
 }
 
@@ -96,17 +96,17 @@ pub struct Camera {
 pub struct PunctualLight {
     /// The node's name.
     pub name: String,
-    /// Where it stands, metres.
+    /// Position, metres.
     pub position: DVec3,
-    /// Where it shines to, unit.
+    /// Direction of its light, unit vector.
     pub direction: DVec3,
     /// Linear RGB × intensity: candela for points and spots, lux for directional lights.
     pub intensity: Rgb,
-    /// What these numbers mean, as far as the file tells by naming the program that wrote it.
+    /// The units of `intensity`, derived from the program that wrote the file.
     pub units: LightUnits,
     /// Which of the extension's three lights it is.
     pub kind: LightKind,
-    /// How wide a directional light looks, radians; 0 for parallel rays (`extras.angular_diameter`, degrees).
+    /// Angular diameter of a directional light, radians; 0 for parallel rays (`extras.angular_diameter`, degrees).
     pub angle: f64,
 }
 
@@ -114,21 +114,21 @@ pub struct PunctualLight {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum LightUnits {
-    /// W/sr and W/m², number for number what glTF calls candela and lux
+    /// W/sr and W/m², numerically equal to glTF's candela and lux
     Radiometric,
-    /// Candela and lux of light of 683 lm/W, as Blender writes by default (lighting mode Standard)
+    /// Candela and lux at 683 lm/W, as Blender writes by default (lighting mode Standard)
     Photometric,
-    /// Watts of whole lamps, as Blender writes in lighting mode Raw, and did before version 3.4: W/(4π) to each sr; W/m² of
-    /// suns
+    /// Total power of lamps in watts, as Blender writes in lighting mode Raw and before version 3.4: W/(4π) for each
+    /// sr; W/m² for suns
     BlenderRaw,
 }
 
 /// The three lights of KHR_lights_punctual.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LightKind {
-    /// Shines evenly to all sides.
+    /// Emits evenly in all directions.
     Point,
-    /// Shines in a cone; half angles in radians.
+    /// Emits in a cone; half angles in radians.
     Spot {
         /// Full intensity up to here.
         inner: f64,

@@ -1,4 +1,4 @@
-//! The light of a whole scene, kept so that the next run may start from it.
+//! The solution of a whole scene, stored as the start of the next run.
 
 use crate::fingerprint::Key;
 use crate::rgb::Rgb;
@@ -13,7 +13,7 @@ pub struct Solution {
     pub radiosity: Vec<Vec<Rgb>>,
 }
 
-/// What was solved.
+/// An instance of a solution.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolvedInstance {
     /// The instance's name.
@@ -25,7 +25,7 @@ pub struct SolvedInstance {
 }
 
 impl Solution {
-    /// The radiosity of an instance of this name and part; none if there was none.
+    /// The radiosity of the instance with this name and part; none if the solution has none.
     pub fn of(&self, name: &str, part: Key) -> Option<&Vec<Rgb>> {
         let place = self.instances.iter().position(|known| known.name == name && known.part == part)?;
         Some(&self.radiosity[place])

@@ -1,7 +1,8 @@
-//! The cache folder: what was baked, by the key of what it was made from, and what each thing was last made from.
+//! The cache folder: results by the key of their inputs, and the latest manifest of each named result.
 //!
-//! Processes may share the folder: files appear whole by renaming, equal keys mean equal content, so it does not matter
-//! who writes last, and turns keep two from making the same thing at once. Any file may be removed at any time.
+//! Processes may share the folder: files are created atomically, equal keys mean equal content, so the order of writes
+//! does not matter, and locks prevent two processes from computing the same result at the same time. Any file may be
+//! removed at any time.
 
 mod eviction;
 mod turn;
@@ -28,11 +29,11 @@ pub struct Store {
     folder: PathBuf,
     /// Clones share it.
     log: Arc<Mutex<Log>>,
-    /// What was read ahead of being asked for; clones share it.
+    /// Results of [`Store::read_ahead`]; clones share them.
     ahead: Arc<Mutex<HashMap<PathBuf, Box<dyn Any + Send>>>>,
 }
 
-/// What happened since the folder was opened.
+/// Events since the folder was opened.
 #[derive(Debug, Default)]
 struct Log {
     damages: Vec<Problem>,
@@ -40,19 +41,19 @@ struct Log {
     used: HashSet<PathBuf>,
 }
 
-/// What the cache has under a key.
+/// The result of a cache lookup.
 #[derive(Debug)]
 pub enum Lookup<T> {
-    /// The thing itself.
+    /// The cached value.
     Found(T),
-    /// Nothing.
+    /// There is no value.
     Missing,
-    /// A file that is no use: say so, and make it again; saving replaces it.
+    /// The file is damaged; saving a new value replaces it.
     Damaged(Error),
 }
 
 impl Store {
-    /// Opens the folder, and makes it if it is not there. Removes what killed processes left half-written.
+    /// Opens the folder, and creates it if it does not exist. Removes incomplete files of killed processes.
     pub fn open(folder: impl AsRef<Path>) -> Result<Self> {
         let folder = folder.as_ref();
         std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder)).map_err(|error| {
@@ -67,12 +68,12 @@ impl Store {
         Ok(Self { folder: folder.into(), log: Arc::default(), ahead: Arc::default() })
     }
 
-    /// Where a `kind` of file with this key lies, or would lie.
+    /// The path of a file of this kind and key, whether or not it exists.
     pub fn path(&self, kind: Kind, key: impl Into<Digest>) -> PathBuf {
         self.folder.join(format!("{}-{}.eqx", kind.noun(), key.into()))
     }
 
-    /// Looks for what was made from the manifest with this key, or would be the same.
+    /// Looks up the value under this key, or under the key that it is an alias of.
     pub fn load<T: Stored>(&self, key: &Key) -> Lookup<T> {
         let key = &self.target(key);
         let path = self.path(T::KIND, *key);
@@ -94,8 +95,8 @@ impl Store {
         }
     }
 
-    /// Reads what lies under these keys on all threads, for [`Store::load`] to have it at hand, once. What is missing or
-    /// damaged is left to that.
+    /// Reads the values under these keys on all threads, for one later [`Store::load`] each. Missing and damaged files
+    /// are left to `load`.
     pub fn read_ahead<T: Stored>(&self, keys: &[Key]) {
         let keys: BTreeSet<Key> = keys.iter().map(|key| self.target(key)).collect();
         keys.into_par_iter().for_each(|key| {
@@ -107,12 +108,12 @@ impl Store {
         });
     }
 
-    /// What was found damaged since the last call, in the order in which it was found, so that a person hears of it.
+    /// The damaged files found since the last call, in the order in which they were found.
     pub fn take_damages(&self) -> Vec<Problem> {
         std::mem::take(&mut self.log().damages)
     }
 
-    /// Keeps `value`, which was made from what `manifest` lists, under the manifest's key.
+    /// Saves `value` under the key of `manifest`, which lists its inputs.
     pub fn save<T: Stored>(&self, manifest: &Manifest, value: &T) -> Result<()> {
         let path = self.path(T::KIND, manifest.key());
         value.write(manifest).write_to(&path)?;
@@ -120,7 +121,7 @@ impl Store {
         Ok(())
     }
 
-    /// Notes that what would be made from what `manifest` lists is what lies under another key.
+    /// Saves that the result of the inputs in `manifest` equals the value under another key.
     pub fn save_alias(&self, manifest: &Manifest, target: &Key) -> Result<()> {
         let path = self.path(Kind::Alias, manifest.key());
         Writer::new(Kind::Alias, manifest, &self.target(target)).write_to(&path)?;
@@ -128,7 +129,7 @@ impl Store {
         Ok(())
     }
 
-    /// The key under which what belongs under this key really lies: another one if it has an alias, else the same.
+    /// The key that this key is an alias of, or else the key itself.
     pub fn target(&self, key: &Key) -> Key {
         let path = self.path(Kind::Alias, *key);
         let read = || {
@@ -142,13 +143,13 @@ impl Store {
         target.unwrap_or(*key)
     }
 
-    /// What the thing called `name` was last made from, if that is known.
+    /// The latest manifest of the result called `name`, if known.
     pub fn last_manifest(&self, name: &str) -> Option<Manifest> {
         let reader = Reader::open(&self.manifest_path(name), Kind::Manifest).ok()?;
         Some(reader.manifest().clone())
     }
 
-    /// Notes what the thing called `name` was made from, in place of what was noted before.
+    /// Saves the latest manifest of the result called `name`, replacing the previous one.
     pub fn remember(&self, name: &str, manifest: &Manifest) -> Result<()> {
         let path = self.manifest_path(name);
         if self.last_manifest(name).as_ref() != Some(manifest) {
@@ -162,14 +163,14 @@ impl Store {
         self.path(Kind::Manifest, Content::new().bytes(name).digest())
     }
 
-    /// A file's time is when it was last used: eviction orders files by it.
+    /// Records a use of the file. Its modification time is when it was last used; eviction orders files by it.
     fn note_use(&self, path: PathBuf) {
-        // Another user's cache may be read-only: its times stay as they are, and only the order of eviction depends on them.
+        // Another user's cache may be read-only. Its times then stay unchanged, which affects only the order of eviction.
         let _ = File::options().append(true).open(&path).and_then(|f| f.set_modified(SystemTime::now()));
         self.log().used.insert(path);
     }
 
-    /// A file that is looked at twice is told of once.
+    /// Records a damaged file, once for each file.
     fn note_damage(&self, error: &Error) {
         let Error::Problem(problem) = error else { return };
         let damages = &mut self.log().damages;

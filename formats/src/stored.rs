@@ -1,7 +1,7 @@
-//! How baked things lie in a container: each as a handful of plain arrays, checked again when they are read.
+//! Storage of results in containers: plain arrays, validated when they are read.
 //!
-//! The checksums already rule out damage. These checks hold a file to what the types promise, so that whoever
-//! computes on them need not ask again.
+//! The checksums already detect damage. These checks establish the invariants of the types, so that computations can
+//! rely on them.
 
 mod geometry;
 mod light;
@@ -13,15 +13,15 @@ use crate::error::Result;
 use crate::fingerprint::Manifest;
 use crate::rgb::Rgb;
 
-/// Something that has a file of its own in the cache.
+/// A type stored in a file of its own.
 pub trait Stored: Sized + Send + 'static {
     /// The kind of its file.
     const KIND: Kind;
 
-    /// The file for `self`, which was made from what `manifest` lists.
+    /// The file for `self`, with the inputs in `manifest`.
     fn write(&self, manifest: &Manifest) -> Writer;
 
-    /// Reads it back, equal to the last bit.
+    /// Reads a value, bit-identical to the written one.
     fn read(reader: &mut Reader) -> Result<Self>;
 }
 
@@ -53,7 +53,7 @@ fn finite_rows<const N: usize>(reader: &mut Reader, name: &str) -> Result<Vec<[f
     Ok(rows.to_vec())
 }
 
-/// Finite lights.
+/// An array of finite RGB values.
 fn finite_lights(reader: &mut Reader, name: &str) -> Result<Vec<Rgb>> {
     Ok(finite_rows(reader, name)?.into_iter().map(Rgb).collect())
 }

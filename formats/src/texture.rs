@@ -1,14 +1,14 @@
-//! How colours vary over a material: images, and the triangles of the source mesh with their places in them.
+//! Textures: images, and the triangles of the source mesh with their texture coordinates.
 
 use crate::ids::MaterialId;
 use crate::rgb::Rgb;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
 
-/// What textures multiply a material's reflectance and emission by.
+/// The textures that multiply a material's reflectance and emission.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Textures {
-    /// On the reflectance; its alpha is the share of the surface that is there.
+    /// On the reflectance; its alpha is the share of the surface that exists.
     pub reflectance: Option<Arc<Texture>>,
     /// On the emission.
     pub emission: Option<Arc<Texture>>,
@@ -19,41 +19,43 @@ pub struct Textures {
 pub struct Texture {
     /// Columns and rows, at least one of each.
     pub size: [u32; 2],
-    /// Red, green and blue as sRGB has them, and alpha, linear; row after row from the top.
+    /// sRGB-encoded red, green and blue, and linear alpha; rows from the top.
     pub texels: Vec<[u8; 4]>,
-    /// What lies beyond the first and last column, and the first and last row.
+    /// The wrap mode beyond the first and last column, and the first and last row.
     pub wrap: [Wrap; 2],
 }
 
-/// What lies beyond the edges of an image.
+/// The wrap mode beyond the edges of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Wrap {
-    /// The image again.
+    /// The image repeats.
     Repeat,
-    /// The image turned round, and again.
+    /// The image repeats, mirrored every other time.
     Mirror,
-    /// The texels at the edge.
+    /// The texels at the edge repeat.
     Clamp,
 }
 
-/// A triangle of the source mesh over which colours vary. Elements find the ones they lie in by place, so that form
-/// factors do not depend on where an author puts a texture.
+/// A textured triangle of the source mesh. Elements are matched with these triangles by position, so that form factors
+/// do not depend on textures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TexturedTriangle {
     /// Its material.
     pub material: MaterialId,
     /// Corners, counter-clockwise seen from the front, metres.
     pub corners: [DVec3; 3],
-    /// What the author's vertex colours multiply the reflectance by, linear RGB.
+    /// Vertex colours, which multiply the reflectance, linear RGB.
     pub colours: [Rgb; 3],
-    /// Where the corners lie in the texture on the reflectance; (0, 0) is the upper left corner, (1, 1) the lower right.
+    /// Texture coordinates of the corners in the texture on the reflectance; (0, 0) is the upper left corner, (1, 1)
+    /// the lower right.
     pub reflectance_at: Option<[DVec2; 3]>,
-    /// Where they lie in the texture on the emission.
+    /// Texture coordinates of the corners in the texture on the emission.
     pub emission_at: Option<[DVec2; 3]>,
 }
 
 impl TexturedTriangle {
-    /// The triangle after `placement`. A mirror turns the order round, so that corners stay counter-clockwise from the front.
+    /// The triangle after `placement`. A mirrored placement reverses the order of the corners, so that they stay
+    /// counter-clockwise from the front.
     pub fn placed(&self, placement: DAffine3) -> Self {
         let mut placed =
             Self { corners: self.corners.map(|corner| placement.transform_point3(corner)), ..self.clone() };

@@ -1,7 +1,7 @@
-//! Files that are there whole or not at all, even where a program is killed while it writes them.
+//! Atomic file writes: files exist completely or not at all, even if the process is killed while it writes.
 //!
-//! [`write_whole`] puts a file under its name or leaves the old one untouched. Until its last byte a file has a temporary
-//! name and is locked, so a temporary file without a lock was left by a process that is gone, and may be removed.
+//! [`write_whole`] replaces a file completely or leaves the old one untouched. Until it is complete, a file has a
+//! temporary name and is locked. A temporary file without a lock was left by a killed process and may be removed.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -11,15 +11,15 @@ use tempfile::NamedTempFile;
 const PREFIX: &str = ".equilux-";
 const SUFFIX: &str = ".tmp";
 
-/// Puts what `fill` writes at `path` in one step. Nothing waits for the disk: only a power cut can leave less. Fails as
-/// the file system does, and then leaves nothing behind.
+/// Writes the output of `fill` to `path` atomically, without flushing to disk: only a power failure can truncate the
+/// file. On errors of the file system or of `fill`, leaves nothing behind.
 pub fn write_whole(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     let mut file = temporary_in(folder_of(path))?;
     let mut buffered = BufWriter::new(&mut file);
     fill(&mut buffered)?;
     buffered.flush()?;
     drop(buffered);
-    // By std's rename, which on Windows, too, replaces a file that another process has open. Locked until it is done.
+    // std's rename also replaces a file that another process has open on Windows. The file is locked until then.
     let (_locked, temporary) = file.into_parts();
     let temporary = temporary.keep().map_err(|error| error.error)?;
     std::fs::rename(&temporary, path).inspect_err(|_| {
@@ -27,31 +27,31 @@ pub fn write_whole(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<
     })
 }
 
-/// Fails if no file could be made beside `path`. Leaves nothing behind.
+/// Fails if no file can be created beside `path`. Leaves nothing behind.
 pub fn check_writable_beside(path: &Path) -> io::Result<()> {
     tempfile::tempfile_in(folder_of(path)).map(drop)
 }
 
-/// Removes the temporary files beside `path` that killed processes left, as opening a store does in its folder.
+/// Removes the temporary files of killed processes beside `path`, as opening a store does in its folder.
 pub fn remove_left_over_beside(path: &Path) {
     remove_left_over(folder_of(path));
 }
 
-/// Removes the temporary files in `folder` that killed processes left; what is still being written stays. Where the file
-/// system has no locks the two cannot be told apart, and all stay.
+/// Removes the temporary files of killed processes in `folder`; files still being written stay. On file systems without
+/// locks the two cannot be distinguished, and all stay.
 pub(crate) fn remove_left_over(folder: &Path) {
     for entry in folder.read_dir().into_iter().flatten().flatten() {
         let name = entry.file_name();
         let temporary = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
-        // Windows locks no file that is open for appending only.
+        // Windows cannot lock a file that is open for appending only.
         if temporary && let Ok(file) = File::options().read(true).append(true).open(entry.path()) {
-            // What cannot be removed does no harm.
+            // Files that cannot be removed are harmless.
             let _ = file.try_lock().map(|()| std::fs::remove_file(entry.path()));
         }
     }
 }
 
-/// A locked temporary file that others may read once it has its name, as the umask allows. Dropped before that, it is gone.
+/// A locked temporary file with the permissions of the umask. It is removed when dropped before it is renamed.
 fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(PREFIX).suffix(SUFFIX);
@@ -59,9 +59,9 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     loop {
         let file = builder.tempfile_in(folder)?;
-        // Without locks no process takes it for left over.
+        // On file systems without locks, no process removes temporary files.
         let _ = file.as_file().lock();
-        // It was not locked from its first moment: another process may have removed it before.
+        // Another process may have removed the file before it was locked.
         if file.path().exists() {
             return Ok(file);
         }

@@ -1,6 +1,6 @@
-//! Numbers out of buffers: the components of an accessor as f64, whatever their type, stride, normalisation or
-//! sparseness. Own code, as the gltf crate's readers panic on quantised positions and on sparse data
-//! that ends early. glTF 2.0 specification, §3.6.2.
+//! Reads accessors: their components as f64, for any type, stride, normalisation or sparseness. The gltf crate's
+//! readers are not used because they panic on quantised positions and on truncated sparse data. glTF 2.0 specification,
+//! §3.6.2.
 
 use super::document::Document;
 use equilux_formats::{Error, Result};
@@ -9,10 +9,10 @@ use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::View;
 use gltf::json::validation::Checked;
 
-/// No accessor has more elements; one without a buffer view could state any count at no cost.
+/// The largest number of elements of an accessor: one without a buffer view could state any count.
 const MOST_ELEMENTS: usize = 1 << 26;
 
-/// The components of `accessor`, element after element. `what` says in errors what they are for.
+/// The components of `accessor`, element after element. Errors call them `what`.
 pub(super) fn components(document: &Document, accessor: &gltf::Accessor, what: &str) -> Result<Vec<f64>> {
     let reader = Reader { document, what, accessor };
     reader.check_count()?;
@@ -39,7 +39,7 @@ pub(super) fn check_type(
     dimensions: Dimensions,
     types: &[DataType],
 ) -> Result<()> {
-    // From the JSON, as the crate panics on types that it does not know.
+    // From the JSON, because the crate panics on unknown types.
     let json = &document.gltf.as_json().accessors[accessor.index()];
     let (component, kind) = (known(&json.component_type), known(&json.type_));
     if kind == Some(dimensions) && component.is_some_and(|component| types.contains(&component.0)) {

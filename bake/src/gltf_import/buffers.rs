@@ -1,4 +1,4 @@
-//! The bytes behind a glTF file: its binary chunk, `data:` URIs, and files beside it.
+//! Reads the buffers of a glTF file: its binary chunk, `data:` URIs, and files beside it.
 
 use super::files::Files;
 use data_url::DataUrl;
@@ -7,21 +7,21 @@ use gltf::buffer::{Source, View};
 use percent_encoding::percent_decode_str;
 use std::path::{Path, PathBuf};
 
-/// The buffers of a file. A buffer that cannot be read is an error where it is used: extensions may fill in buffers that
-/// nothing here looks at.
+/// The buffers of a file. An unreadable buffer is an error only where it is used: extensions may have buffers that the
+/// importer ignores.
 pub(super) struct Buffers {
     path: PathBuf,
     buffers: Vec<Result<Vec<u8>>>,
 }
 
 impl Buffers {
-    /// Those of `gltf`, the file at `path`, each as long as its `byteLength` says.
+    /// The buffers of `gltf`, the file at `path`, each of its `byteLength`.
     pub(super) fn read(files: &mut Files, path: &Path, gltf: &gltf::Document, binary: Option<&[u8]>) -> Self {
         let buffers = gltf.buffers().map(|buffer| read_buffer(files, path, &buffer, binary));
         Self { path: path.to_path_buf(), buffers: buffers.collect() }
     }
 
-    /// The bytes of `view`. `what` says in errors what for.
+    /// The bytes of `view`. Errors call them `what`.
     pub(super) fn view(&self, view: &View, what: &str) -> Result<&[u8]> {
         let buffer = self.buffers[view.buffer().index()].as_ref().map_err(Error::clone)?;
         let end = view.offset().checked_add(view.length());
@@ -65,7 +65,7 @@ fn read_buffer(
     Ok(bytes)
 }
 
-/// The bytes that `uri` in the file at `path` stands for: data, or another file. `what` says in errors what for.
+/// The bytes that `uri` in the file at `path` refers to: data, or another file. Errors call them `what`.
 pub(super) fn uri_bytes(files: &mut Files, path: &Path, uri: &str, what: &str) -> Result<Vec<u8>> {
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         return decode(uri).map_err(|why| {

@@ -1,5 +1,4 @@
-//! Vertex attributes that colour a primitive: places in textures, transformed as KHR_texture_transform asks, and vertex
-//! colours.
+//! Vertex attributes that colour a primitive: texture coordinates, transformed by KHR_texture_transform, and vertex colours.
 
 use super::accessors::{check_type, components};
 use super::document::Document;
@@ -16,8 +15,8 @@ pub(super) struct Use {
 }
 
 impl Use {
-    /// What `info` says. The extension's own example, which takes a quadrant of an image, settles to which side its
-    /// rotation turns: as seen where v points down, coordinates turn counter-clockwise.
+    /// The use that `info` describes. The extension's example, which selects a quadrant of an image, defines the sense
+    /// of its rotation: with v pointing down, coordinates turn counter-clockwise.
     pub(super) fn of(info: &texture::Info) -> Self {
         let Some(transform) = info.texture_transform() else {
             return Self { set: info.tex_coord(), transform: DAffine2::IDENTITY };
@@ -36,7 +35,7 @@ impl Use {
         primitive.get(&Semantic::TexCoords(self.set)).is_some()
     }
 
-    /// Where the vertices of `primitive` lie in the texture; none if it has no such coordinates.
+    /// The texture coordinates of the vertices of `primitive`; none if it has no such attribute.
     pub(super) fn places(
         &self,
         document: &Document,
@@ -77,7 +76,7 @@ pub(super) fn texture_coordinates(
     Ok(Some(components(document, &accessor, &what)?.chunks_exact(2).map(DVec2::from_slice).collect()))
 }
 
-/// COLOR_0, if the primitive has it, in 0..1 as glTF says they shall be taken; its alpha is left aside.
+/// COLOR_0, if the primitive has it, clamped to 0..1 as glTF requires, without alpha.
 pub(super) fn vertex_colours(
     document: &Document,
     primitive: &Primitive,

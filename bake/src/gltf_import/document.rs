@@ -1,5 +1,5 @@
-//! One glTF file as parsed and validated JSON with all its buffers in memory: every index between JSON objects is valid;
-//! nothing is known yet about the bytes.
+//! One glTF file as parsed and validated JSON with all its buffers in memory: every index between JSON objects is
+//! valid; the bytes are not checked yet.
 
 use super::buffers::Buffers;
 use equilux_formats::Error;
@@ -7,7 +7,7 @@ use image::RgbaImage;
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-/// A file that was read.
+/// A glTF file in memory.
 pub(super) struct Document {
     /// Where it lies.
     pub(super) path: PathBuf,
@@ -15,7 +15,7 @@ pub(super) struct Document {
     pub(super) gltf: gltf::Document,
     /// The bytes of its buffers.
     pub(super) buffers: Buffers,
-    /// Those of its images that colour what is baked.
+    /// The images that colour surfaces.
     pub(super) images: HashMap<usize, RgbaImage>,
 }
 
@@ -36,7 +36,7 @@ impl Document {
     }
 }
 
-/// What a node is called: its name, its mesh's, or its number.
+/// The name of a node: its own, its mesh's, or its number.
 pub(super) fn label(node: &gltf::Node) -> String {
     let named = node.name().or_else(|| node.mesh().and_then(|mesh| mesh.name()));
     named.filter(|name| !name.is_empty()).map_or_else(|| format!("node {}", node.index()), str::to_owned)

@@ -1,4 +1,4 @@
-//! A part before it is settled: the surfaces of all nodes below some root, moved into one system of coordinates.
+//! Drafts of parts: the surfaces of all nodes below a root, in one coordinate system.
 
 use super::document::Document;
 use super::extras::Extras;
@@ -11,25 +11,25 @@ use super::surfaces::{Dropped, f32_spacing};
 use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface, TexturedTriangle};
 use glam::{DAffine3, DVec3};
 
-/// No part has more surfaces: a few kilobytes of nodes that share a mesh could ask for any number.
+/// The largest number of surfaces of a part: a few kilobytes of nodes that share a mesh could produce any number.
 const MOST_SURFACES: usize = 1 << 24;
 
-/// What an author may ask for a part as a whole.
+/// The settings of a part as a whole.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Settings {
-    /// Size of elements, metres.
+    /// Element size, metres.
     pub(super) element_size: Option<f64>,
-    /// How the local equilibrium is found.
+    /// The solver of the local equilibrium.
     pub(super) local_solver: Option<LocalSolver>,
 }
 
 impl Settings {
-    /// What `extras` ask for.
+    /// The settings in `extras`.
     pub(super) fn of(extras: &Extras) -> Self {
         Self { element_size: extras.element_size, local_solver: extras.local_solver }
     }
 
-    /// These settings and, where they are silent, `other`'s.
+    /// These settings, completed by those of `other`.
     pub(super) fn or(self, other: Self) -> Self {
         Self {
             element_size: self.element_size.or(other.element_size),
@@ -37,7 +37,7 @@ impl Settings {
         }
     }
 
-    /// Takes up what the node called `name` asks for. The first node that asks decides for the part.
+    /// Adds the settings of the node called `name`. The first node with a setting decides for the part.
     pub(super) fn hear(&mut self, asked: Self, name: &str, notes: &mut Notes) {
         let together = self.or(asked);
         if asked.or(together) != together {
@@ -56,11 +56,11 @@ pub(super) struct Draft {
     pub(super) lights: Vec<PunctualLight>,
     pub(super) settings: Settings,
     pub(super) dropped: Dropped,
-    /// What f32 leaves undecided of its coordinates in the file, in its own unit.
+    /// The f32 step of its coordinates in the file, in its own unit.
     pub(super) step: f64,
 }
 
-/// What f32 leaves undecided of coordinates after `placement`, where it left `step` before.
+/// The f32 step `step` of coordinates after `placement`.
 pub(super) fn step_after(step: f64, placement: DAffine3) -> f64 {
     let DAffine3 { matrix3, translation } = placement;
     let scale =
@@ -69,7 +69,7 @@ pub(super) fn step_after(step: f64, placement: DAffine3) -> f64 {
 }
 
 impl Draft {
-    /// Adds `mesh`, placed by `placement`, as `look` changes it.
+    /// Adds `mesh`, placed by `placement` and repainted by `look`.
     pub(super) fn add_mesh(
         &mut self,
         document: &Document,
@@ -88,7 +88,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Adds all of `other`, placed by `placement`, as `look` changes it.
+    /// Adds all of `other`, placed by `placement` and repainted by `look`.
     pub(super) fn add_draft(
         &mut self,
         document: &Document,
@@ -137,8 +137,8 @@ impl Draft {
     }
 }
 
-/// Paints, each once. Equal ones of different names stay apart: any of them may be repainted by its name, and that must
-/// not change elements.
+/// Distinct paints. Equal paints of different names stay distinct: each may be repainted by its name, which must not
+/// change elements.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Paints(pub(super) Vec<Paint>);
 

@@ -1,19 +1,19 @@
-//! What programs that write glTF are known to write, by how they name themselves in `asset.generator`.
+//! Light units of known glTF exporters, identified by `asset.generator`.
 
 use equilux_formats::LightUnits;
 
-/// How Blender's exporter names itself before its version.
+/// The name of Blender's exporter, before its version.
 const BLENDER: &str = "Khronos glTF Blender I/O";
 
-/// The same until 2019, without a version.
+/// Its name until 2019, without a version.
 const EARLY_BLENDER: &str = "Khronos Blender glTF 2.0";
 
 /// The version in which it began to write candela and lux by default (lighting mode Standard: 683 lm/W, and 4π sr to a lamp).
 /// Before, it wrote the watts of lamps as they were. Its other modes leave no trace in a file.
 const IN_CANDELA: (u32, u32) = (3, 4);
 
-/// What the intensities of lights mean in a file that `generator` wrote. The specification says candela and lux, but not of
-/// what light; what is unknown is taken number for number.
+/// The units of light intensities in a file written by `generator`. The specification requires candela and lux but
+/// defines no luminous efficacy; numbers of unknown exporters are used unchanged, as radiometric units.
 pub(super) fn light_units(generator: Option<&str>) -> LightUnits {
     let name = generator.unwrap_or_default();
     match name.strip_prefix(BLENDER).map(major_and_minor) {

@@ -1,4 +1,4 @@
-//! What authors ask for in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `angular_diameter`,
+//! Settings in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `angular_diameter`,
 //! `local_solver`. Other keys are ignored.
 
 use super::document::{Document, label};
@@ -6,25 +6,25 @@ use super::repaint::{Changes, changes};
 use equilux_formats::{LocalSolver, Result};
 use serde_json::Value;
 
-/// The keys that mean something here.
+/// The known keys.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Extras {
-    /// A file whose contents stand at this node, relative to the node's file.
+    /// Path of a part file that replaces the contents of this node, relative to the node's file.
     pub(super) part: Option<String>,
     /// Size of the part's elements, metres.
     pub(super) element_size: Option<f64>,
     /// Factor on the emission of everything below the node.
     pub(super) emission_scale: Option<f64>,
-    /// What becomes of materials of everything below the node.
+    /// Changes of the materials of everything below the node.
     pub(super) materials: Option<Changes>,
-    /// How wide the directional light at the node looks, degrees.
+    /// Angular diameter of the directional light at the node, degrees.
     pub(super) angular_diameter: Option<f64>,
-    /// How the part's local equilibrium is found.
+    /// The solver of the part's local equilibrium.
     pub(super) local_solver: Option<LocalSolver>,
 }
 
 impl Extras {
-    /// Reads the extras of `node`. Errors name node, key and value.
+    /// Parses the extras of `node`. Errors name node, key and value.
     pub(super) fn of(document: &Document, node: &gltf::Node) -> Result<Self> {
         let values = node.extras().as_ref().and_then(|raw| serde_json::from_str(raw.get()).ok());
         let Some(Value::Object(values)) = values else { return Ok(Self::default()) };

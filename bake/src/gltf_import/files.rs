@@ -1,16 +1,16 @@
-//! The only place where the importer touches the disk. Resolves references found in files, reads the files, lists what was
-//! read, and refuses whatever lies outside the scene's folder.
+//! All file access of the importer: resolves references in files, reads and lists files, and refuses files outside the
+//! scene's folder.
 
 use equilux_formats::{Error, Problem, Result};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
-/// Whether `path` is called as glTF files are.
+/// Whether `path` has the extension of a glTF file.
 pub fn is_gltf(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gltf") || e.eq_ignore_ascii_case("glb"))
 }
 
-/// The glTF files in `folder`, but not in folders in it, sorted; none if it cannot be read.
+/// The glTF files directly in `folder`, sorted; none if it cannot be read.
 pub fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut scenes: Vec<PathBuf> = entries.filter(|path| is_gltf(path) && path.is_file()).collect();
@@ -18,11 +18,11 @@ pub fn scenes_in(folder: &Path) -> Vec<PathBuf> {
     scenes
 }
 
-/// The scene's folder and what was read in it.
+/// The scene's folder and the files that were read in it.
 pub(super) struct Files {
-    /// The folder as the caller named it, so that errors and sources show paths the caller knows.
+    /// The folder as given by the caller, for paths in errors and sources.
     folder: PathBuf,
-    /// The same folder, free of links.
+    /// The canonical path of the folder.
     root: PathBuf,
     /// Files that were read, the scene first.
     pub(super) sources: Vec<PathBuf>,
@@ -38,7 +38,7 @@ impl Files {
         Ok(Self { folder, root, sources: Vec::new() })
     }
 
-    /// Reads all of `path`, which is the scene or came from [`Files::resolve`].
+    /// Reads `path`, which is the scene or a result of [`Files::resolve`].
     pub(super) fn read(&mut self, path: &Path) -> Result<Vec<u8>> {
         let metadata = fs::metadata(path).map_err(|error| unreadable(path, &error))?;
         if metadata.is_dir() {
@@ -54,7 +54,7 @@ impl Files {
         Ok(bytes)
     }
 
-    /// Like [`Files::read`]; errors name the file `from` and what in it refers to `path`.
+    /// Like [`Files::read`]; errors name the file `from`, and call the referring object `what`.
     pub(super) fn read_referenced(&mut self, from: &Path, path: &Path, what: &str) -> Result<Vec<u8>> {
         self.read(path).map_err(|error| match error {
             Error::Problem(Problem { found, expected, remedy, .. }) => {
@@ -64,8 +64,8 @@ impl Files {
         })
     }
 
-    /// The file that `reference` means in the file `from`; one file has one path, however it is referred to. `what` says in
-    /// errors what refers to it.
+    /// The file that `reference` in the file `from` refers to. One file has one path, however it is referred to. Errors
+    /// call the referring object `what`.
     pub(super) fn resolve(&self, from: &Path, reference: &str, what: &str) -> Result<PathBuf> {
         let refused = |why: &str| {
             Error::new(
@@ -108,7 +108,7 @@ impl Files {
     }
 }
 
-/// Whether `reference` starts as a URL does; a drive letter looks the same.
+/// Whether `reference` starts like a URL, or with a drive letter.
 fn has_scheme(reference: &str) -> bool {
     reference.split_once(':').is_some_and(|(scheme, _)| {
         scheme.starts_with(|c: char| c.is_ascii_alphabetic())
@@ -116,7 +116,7 @@ fn has_scheme(reference: &str) -> bool {
     })
 }
 
-/// The component by which `relative` gets out of the folder it starts in, on paper.
+/// The component by which `relative` leaves its folder, judged by the path alone.
 fn leaves(relative: &Path) -> Option<Component<'_>> {
     let mut depth = 0_usize;
     for component in relative.components() {
@@ -130,7 +130,7 @@ fn leaves(relative: &Path) -> Option<Component<'_>> {
     None
 }
 
-/// The error about a folder where a scene should be.
+/// The error for a folder in place of a scene.
 fn not_one_scene(folder: &Path) -> Error {
     let found = match &scenes_in(folder)[..] {
         [] => "a folder without a .gltf or .glb file in it".to_owned(),
@@ -152,7 +152,7 @@ fn unreadable(path: &Path, error: &std::io::Error) -> Error {
     )
 }
 
-/// The name of the file at `path`, to speak of it in notes.
+/// The name of the file at `path`, for notes.
 pub(super) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }

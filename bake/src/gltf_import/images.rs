@@ -1,5 +1,5 @@
-//! Images behind textures: PNG, JPEG and WebP files, embedded or beside the glTF file, as [`Texture`]s. Only images that
-//! colour what is baked are read.
+//! Reads the images of textures: PNG, JPEG and WebP files, embedded or beside the glTF file, as [`Texture`]s. Only
+//! images that affect reflectance or emission are read.
 
 use super::buffers::{Buffers, uri_bytes};
 use super::document::Document;
@@ -14,12 +14,12 @@ use std::io::Cursor;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The number of the image that `info` shows, unless its texture has none that can be read here.
+/// The number of the image of `info`, unless its texture has none in a supported format.
 pub(super) fn image_of(info: &Info) -> Option<usize> {
     info.texture().source().map(|image| image.index())
 }
 
-/// The pixels of the images of `gltf` that colour reflectance or emission, by number.
+/// The pixels of the images of `gltf` that affect reflectance or emission, by number.
 pub(super) fn read_images(
     files: &mut Files,
     path: &Path,
@@ -33,7 +33,7 @@ pub(super) fn read_images(
     };
     let used: BTreeSet<usize> = gltf.materials().flat_map(of).flatten().collect();
     let mut pixels = HashMap::new();
-    // From the JSON, as the crate panics on images without data.
+    // From the JSON, because the crate panics on images without data.
     for (index, image) in gltf.as_json().images.iter().enumerate() {
         let what = format!("image {}", name(image).map_or_else(|| index.to_string(), str::to_owned));
         if used.contains(&index) {
@@ -53,7 +53,7 @@ fn name(image: &json::Image) -> Option<&str> {
     image.name.as_deref().or(file).filter(|name| !name.is_empty())
 }
 
-/// The pixels of `image`, which errors call `what`.
+/// The pixels of `image`. Errors call it `what`.
 fn read_image(
     files: &mut Files,
     path: &Path,
@@ -85,7 +85,7 @@ fn read_image(
     })
 }
 
-/// The pixels of a PNG, JPEG or WebP file, whatever it is called. Of 16-bit channels the upper bits stay.
+/// The pixels of a PNG, JPEG or WebP file, identified by its content. 16-bit channels are reduced to 8 bits.
 fn decode(bytes: &[u8]) -> std::result::Result<RgbaImage, String> {
     let format = image::guess_format(bytes).ok();
     let Some(format @ (ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::WebP)) = format else {
@@ -96,23 +96,23 @@ fn decode(bytes: &[u8]) -> std::result::Result<RgbaImage, String> {
     if image.as_raw().is_empty() { Err("it has no pixels".to_owned()) } else { Ok(image) }
 }
 
-/// What becomes of an image's alpha.
+/// The meaning of an image's alpha.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Alpha {
-    /// All is there.
+    /// Alpha is ignored.
     Ignored,
-    /// What has at least this alpha is there, of 255.
+    /// The surface exists where alpha, of 255, is at least this.
     From(u16),
-    /// So much of the surface is there.
+    /// Alpha is the share of the surface that exists.
     Share,
 }
 
-/// The textures of one document, each once.
+/// The distinct textures of one document.
 #[derive(Default)]
 pub(super) struct Textures(HashMap<(usize, [Wrap; 2], Alpha), Arc<Texture>>);
 
 impl Textures {
-    /// The texture of `document` that `info` names, if it has an image.
+    /// The texture of `document` that `info` refers to, if it has an image.
     pub(super) fn get(&mut self, document: &Document, info: &Info, alpha: Alpha) -> Option<Arc<Texture>> {
         let (image, sampler) = (image_of(info)?, info.texture().sampler());
         let wrap = [sampler.wrap_s(), sampler.wrap_t()].map(wrap);

@@ -1,7 +1,7 @@
-//! EXT_mesh_gpu_instancing: the places of a node whose contents stand in many.
+//! EXT_mesh_gpu_instancing: the placements of a node with several copies of its mesh.
 //!
-//! Accessors give TRANSLATION, ROTATION and SCALE of each copy, in the node's coordinates; what is not given is none, a turn
-//! by nothing, and one. The copies take the place of the node's own mesh; what hangs below the node stands once.
+//! Accessors give TRANSLATION, ROTATION and SCALE of each copy, in the node's coordinates; missing attributes default
+//! to the identity. The copies replace the node's own mesh; nodes below it are not copied.
 
 use super::accessors::{check_type, components};
 use super::document::{Document, label};
@@ -11,20 +11,20 @@ use glam::{DAffine3, DQuat, DVec3};
 use gltf::accessor::{DataType, Dimensions};
 use serde_json::Value;
 
-/// The extension.
+/// The name of the extension.
 pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
 
-/// No scene has more: each exchanges light with all others, and an accessor without data could state any count.
+/// The largest number of copies in a scene: each exchanges light with all others, and an accessor without data could
+/// state any count.
 pub(super) const MOST_COPIES: usize = 1 << 14;
 
 impl PlacedNode<'_> {
-    /// Whether its contents stand where the extension says.
+    /// Whether the extension places its contents.
     pub(super) fn is_instanced(&self) -> bool {
         self.node.extension_value(INSTANCING).is_some()
     }
 
-    /// Where its contents stand, and what they are called there: once, by its own name, or as the extension says,
-    /// `name #0` and so on.
+    /// Names and placements of its contents: one with its own name, or those of the extension, `name #0` and so on.
     pub(super) fn copies(&self, document: &Document) -> Result<Vec<(String, DAffine3)>> {
         let once = || Ok(vec![(self.name(), self.placement)]);
         let Some(extension) = self.node.extension_value(INSTANCING) else { return once() };
@@ -50,7 +50,7 @@ impl PlacedNode<'_> {
     }
 }
 
-/// Whether there are attributes, but all are an application's own: such copies stand in one place, where one is enough.
+/// Whether all attributes are application-specific: such copies coincide, and one is enough.
 fn has_only_own_attributes(extension: &Value) -> bool {
     let attributes = extension.get("attributes").and_then(Value::as_object);
     attributes.is_some_and(|all| !all.is_empty() && all.keys().all(|name| name.starts_with('_')))
@@ -100,7 +100,7 @@ impl Attributes<'_> {
         }
     }
 
-    /// The number of copies, which all attributes must agree on.
+    /// The number of copies, which must be the same for all attributes.
     fn count(&self, attributes: [(&Option<Vec<f64>>, usize); 3]) -> Result<usize> {
         let counts = attributes.map(|(values, width)| values.as_ref().map(|values| values.len() / width));
         let mut given = counts.into_iter().flatten();
@@ -115,7 +115,7 @@ impl Attributes<'_> {
         }
     }
 
-    /// All numbers of an attribute, if it is there.
+    /// All numbers of an attribute, if present.
     fn values(&self, name: &str, dimensions: Dimensions, types: &[DataType]) -> Result<Option<Vec<f64>>> {
         let Some(index) = self.extension.get("attributes").and_then(|attributes| attributes.get(name)) else {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! Punctual lights and cameras: what stands in a scene beside its parts.
+//! Imports punctual lights and cameras.
 
 use super::document::Document;
 use super::exporters::light_units;
@@ -49,17 +49,17 @@ pub(super) fn light(document: &Document, placed: &PlacedNode, source: &Light) ->
 pub(super) fn moved(light: &PunctualLight, placement: DAffine3, emission_scale: f64) -> PunctualLight {
     PunctualLight {
         position: placement.transform_point3(light.position),
-        // A node flattened to nothing leaves no direction; the light keeps its own.
+        // A degenerate node has no direction; the light keeps its own.
         direction: placement.transform_vector3(light.direction).try_normalize().unwrap_or(light.direction),
         intensity: light.intensity * emission_scale,
         ..light.clone()
     }
 }
 
-/// The camera at a node, if it is one this project can look through.
+/// The camera at a node, if its kind is supported.
 pub(super) fn camera(document: &Document, placed: &PlacedNode, notes: &mut Notes) -> Result<Option<Camera>> {
     let Some(index) = placed.node.camera().map(|camera| camera.index()) else { return Ok(None) };
-    // From the JSON, as the crate believes the stated type even where the object for it is missing.
+    // From the JSON, because the crate relies on the stated type even if its object is missing.
     let Some(lens) = &document.gltf.as_json().cameras[index].perspective else {
         notes.add(
             format!("camera {}", placed.name()),
@@ -83,7 +83,7 @@ pub(super) fn camera(document: &Document, placed: &PlacedNode, notes: &mut Notes
     Ok(Some(Camera { name: placed.name(), placement, vertical_fov, aspect }))
 }
 
-/// glTF takes cameras to be unscaled: what is left is where the camera stands, where it looks and what is up.
+/// glTF defines cameras to be unscaled: position, viewing direction and up vector remain.
 fn without_scale(placement: DAffine3) -> DAffine3 {
     let back = placement.matrix3.z_axis.normalize_or(DVec3::Z);
     let up = placement.matrix3.y_axis.reject_from_normalized(back);

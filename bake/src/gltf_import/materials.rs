@@ -1,9 +1,7 @@
-//! What a surface does with light, from glTF's metallic-roughness material: base colour → reflectance, emissive
-//! factor × strength × π → emission, and the textures on both. All else a material may hold is ignored and noted. What
-//! authors repaint is told by [`super::repaint`].
+//! Converts glTF's metallic-roughness materials: base colour → reflectance, emissive factor × strength × π → emission,
+//! and the textures of both. All other properties are ignored and noted. [`super::repaint`] handles changes in extras.
 //!
-//! What a transparent surface lets through is lost here: its reflectance counts by the share that is there, and it
-//! blocks light as a whole.
+//! Light transmitted by transparent surfaces is lost: alpha scales the reflectance, and the surface is opaque.
 
 use super::coordinates::Use;
 use super::document::Document;
@@ -14,26 +12,26 @@ use gltf::material::AlphaMode;
 use gltf::texture::Info;
 use std::f64::consts::PI;
 
-/// The extension for glass.
+/// The extension for transmission, such as glass.
 const TRANSMISSION: &str = "KHR_materials_transmission";
 
-/// A material as a file has it. Factor and strength of the emission are kept apart, as either may be repainted.
+/// A material of a file. Factor and strength of the emission are kept separately because either may be repainted.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Paint {
     pub(super) name: String,
     /// Base colour, alpha last.
     pub(super) base_colour: [f64; 4],
-    /// Whether its alpha is the share of the surface that is there.
+    /// Whether its alpha is the share of the surface that exists.
     pub(super) blends: bool,
     pub(super) emissive_factor: [f64; 3],
-    /// Emission scales of nodes included.
+    /// Including emission scales of nodes.
     pub(super) emissive_strength: f64,
     pub(super) double_sided: bool,
     pub(super) textures: Textures,
 }
 
 impl Paint {
-    /// What it does with light.
+    /// Its reflectance and emission.
     pub(super) fn material(&self) -> Material {
         let [red, green, blue, alpha] = self.base_colour;
         let there = if self.blends { alpha } else { 1.0 };
@@ -47,7 +45,7 @@ impl Paint {
     }
 }
 
-/// How a material uses its textures.
+/// The textures of a material.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Uses {
     pub(super) reflectance: Option<Use>,
@@ -55,7 +53,7 @@ pub(super) struct Uses {
 }
 
 impl Uses {
-    /// What `source` says.
+    /// The textures of `source`.
     pub(super) fn of(source: &gltf::Material) -> Self {
         let reflectance = source.pbr_metallic_roughness().base_color_texture();
         let of = |info: Option<Info>| info.filter(|info| image_of(info).is_some()).as_ref().map(Use::of);
@@ -63,7 +61,7 @@ impl Uses {
     }
 }
 
-/// The paint that `source` is.
+/// The paint for `source`.
 pub(super) fn paint(
     document: &Document,
     source: &gltf::Material,
@@ -118,7 +116,7 @@ fn textures(document: &Document, source: &gltf::Material, shelf: &mut images::Te
     }
 }
 
-/// The least alpha of a texel, of 255, that is not below the cutoff once multiplied by `factor`.
+/// The smallest alpha of a texel, of 255, whose product with `factor` is not below the cutoff.
 fn least_alpha(cutoff: Option<f32>, factor: f32) -> u16 {
     let least = f64::from(cutoff.unwrap_or(0.5)) / f64::from(factor) * 255.0;
     if least <= 255.0 { least.ceil() as u16 } else { 256 }
@@ -161,7 +159,7 @@ fn note_ignored(source: &gltf::Material, subject: &str, notes: &mut Notes) {
     }
 }
 
-/// What is wrong with a texture that has no image.
+/// The description of a texture without a usable image.
 fn without_image(texture: &gltf::Texture) -> String {
     let extensions = texture.extensions().into_iter().flat_map(|extensions| extensions.keys());
     match extensions.cloned().collect::<Vec<_>>().join(", ") {
@@ -170,7 +168,7 @@ fn without_image(texture: &gltf::Texture) -> String {
     }
 }
 
-/// Whether two materials do the same with light, whatever they are called.
+/// Whether two materials are equal except for their names.
 pub(super) fn same_material(left: &Material, right: &Material) -> bool {
     (left.reflectance, left.emission, left.double_sided)
         == (right.reflectance, right.emission, right.double_sided)

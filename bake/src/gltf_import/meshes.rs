@@ -1,4 +1,4 @@
-//! Meshes read once, however often they are placed: surfaces in mesh coordinates and the material of each primitive.
+//! Imports meshes, each once however often it is placed: surfaces in mesh coordinates and the material of each primitive.
 
 use super::document::Document;
 use super::images::Textures;
@@ -13,18 +13,18 @@ use std::rc::Rc;
 /// A mesh in its own coordinates.
 #[derive(Default)]
 pub(super) struct Mesh {
-    /// What it is made of.
+    /// Its primitives.
     pub(super) primitives: Vec<Primitive>,
-    /// What was left out of it.
+    /// The dropped faces.
     pub(super) dropped: Dropped,
-    /// What rounding left undecided of its largest coordinate, in its own unit.
+    /// The rounding step of its largest coordinate, in its own unit.
     pub(super) step: f64,
 }
 
-/// A primitive: surfaces of one paint. All name material 0, until a part numbers its paints.
+/// A primitive: surfaces of one paint. All refer to material 0 until a part numbers its paints.
 pub(super) struct Primitive {
     pub(super) surfaces: Vec<Surface>,
-    /// How colours vary over them.
+    /// Textured triangles, if colours vary over them.
     pub(super) textured: Vec<TexturedTriangle>,
     pub(super) paint: Paint,
 }
@@ -37,12 +37,12 @@ pub(super) struct Meshes<'a> {
 }
 
 impl<'a> Meshes<'a> {
-    /// No mesh of `document` has been read yet.
+    /// The meshes of `document`, none of which is read yet.
     pub(super) fn of(document: &'a Document) -> Self {
         Self { document, read: HashMap::new(), textures: Textures::default() }
     }
 
-    /// The mesh `source` of the document.
+    /// The mesh `source` of the document, read on first use.
     pub(super) fn get(&mut self, source: &gltf::Mesh, notes: &mut Notes) -> Result<Rc<Mesh>> {
         if let Some(mesh) = self.read.get(&source.index()) {
             return Ok(Rc::clone(mesh));

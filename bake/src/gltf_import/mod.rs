@@ -1,14 +1,13 @@
 //! glTF → [`Scene`]: a `.gltf` or `.glb` file, with the files it refers to, becomes parts of clean surfaces, their
-//! instances, cameras and lights, and notes on what was left out. All that is untidy about glTF ends here.
+//! instances, cameras and lights, and notes on what was left out. Code outside this module does not depend on glTF.
 //!
-//! - A part is a root node with all below it. A lone root that only wraps others is looked through. Roots with equal
-//!   contents are instances of one part.
+//! - A part is a root node with all nodes below it. If a single root only wraps others, its children are the parts. Roots
+//!   with equal contents are instances of one part.
 //! - A node whose extras name a `part` file is an instance of that file's contents.
-//! - A node with EXT_mesh_gpu_instancing is as many instances.
+//! - A node with EXT_mesh_gpu_instancing becomes one instance for each copy.
 //! - A part's coordinates start at zero, so that shapes far from the origin keep their digits; placements are
 //!   similarities, so that form factors are the same in each instance.
-//! - Bad input is refused, naming file, finding, expectation and remedy; input that is merely more than radiosity can
-//!   use is noted.
+//! - Faulty input is refused with file, finding, expectation and remedy; features that radiosity cannot use are noted.
 
 mod accessors;
 mod buffers;
@@ -56,9 +55,9 @@ use surfaces::Dropped;
 /// Reads a scene.
 ///
 /// # Errors
-/// Files that are missing, truncated or not glTF 2.0; that contradict themselves; that require an extension unknown
-/// here; that refer to anything outside the scene's folder; whose images are broken; that hold reflectances outside 0..1,
-/// or no surfaces.
+/// The file, or one it refers to, is missing, truncated, inconsistent or not glTF 2.0; requires an unsupported
+/// extension; refers to a file outside the scene's folder; has damaged images or reflectances outside 0..1; or the
+/// scene has no surfaces.
 pub fn import_scene(file: &Path) -> Result<Scene> {
     let mut part_files = PartFiles::around(file)?;
     let document = part_files.open(file)?;
@@ -69,30 +68,30 @@ pub fn import_scene(file: &Path) -> Result<Scene> {
     stage.into_scene()
 }
 
-/// The scene as it fills.
+/// The scene under construction.
 struct Stage<'a> {
     document: &'a Document,
     part_files: PartFiles,
     meshes: Meshes<'a>,
     catalogue: Catalogue,
-    /// What became of recipes met before; nothing if no face was left.
+    /// The parts of earlier recipes; none if all their faces were dropped.
     made: HashMap<Recipe, Option<ImportedPart>>,
     scene: Scene,
 }
 
-/// A part, as it came from a recipe.
+/// The part made from a recipe.
 #[derive(Clone)]
 struct ImportedPart {
     part: PartId,
-    /// Where it starts in the coordinates of its draft.
+    /// Its origin in the coordinates of its draft.
     start: DVec3,
-    /// Its materials, with the names that they have in this recipe.
+    /// Its materials, with their names in this recipe.
     paints: Rc<[Paint]>,
-    /// What f32 left undecided of the coordinates of its draft, in the draft's unit.
+    /// The f32 step of the coordinates of its draft, in the draft's unit.
     step: f64,
 }
 
-/// What a part is made from; equal recipes make equal parts. Floats as bits.
+/// The inputs of a part; equal recipes make equal parts. Floats as bits.
 #[derive(PartialEq, Eq, Hash)]
 struct Recipe {
     file: Option<PathBuf>,
@@ -102,7 +101,7 @@ struct Recipe {
     linear: [u64; 9],
 }
 
-/// What stands at a node.
+/// The contents of a node.
 enum Contents<'a> {
     /// Nodes with meshes, in the coordinates of the node.
     Nodes(Vec<PlacedNode<'a>>),
@@ -141,7 +140,7 @@ impl<'a> Stage<'a> {
         Ok(scene)
     }
 
-    /// Adds the part that `root` is, then whatever else stands below it.
+    /// Adds the part of `root`, then everything else below it.
     fn add_root(&mut self, root: PlacedNode<'a>) -> Result<()> {
         let mut own = subtree(self.document, root.as_origin())?;
         own.retain(|placed| placed.extras.part.is_none() && !placed.is_instanced());
@@ -157,7 +156,7 @@ impl<'a> Stage<'a> {
         subtree(self.document, root)?.iter().try_for_each(|placed| self.add_other(placed))
     }
 
-    /// Adds what is not a mesh of the root's part: a part file, copies of a mesh, a light, a camera.
+    /// Adds a node that is not a mesh of the root's part: a part file, copies of a mesh, a light, a camera.
     fn add_other(&mut self, placed: &PlacedNode<'a>) -> Result<()> {
         if let Some(reference) = &placed.extras.part {
             let (path, draft) = self.part_files.draft(self.document, placed, reference)?;
@@ -284,7 +283,7 @@ fn recipe(contents: &Contents, settings: Settings, linear: DMat3) -> Recipe {
     }
 }
 
-/// The materials that look otherwise, emission scales left aside.
+/// The repainted materials, without emission scales.
 fn repainted(look: &Look, paints: &[Paint]) -> Vec<Repainted> {
     let repainted = |(number, paint): (usize, &Paint)| {
         let new = look.repainted(paint);

@@ -10,19 +10,19 @@ use gltf::Node;
 use gltf::scene::Transform;
 use std::rc::Rc;
 
-/// A node and what it inherits from the nodes above it.
+/// A node with the properties it inherits from the nodes above it.
 #[derive(Clone)]
 pub(super) struct PlacedNode<'a> {
     pub(super) node: Node<'a>,
     pub(super) extras: Extras,
-    /// Node coordinates → coordinates of whatever the walk began in.
+    /// Node coordinates → coordinates of the start of the walk.
     pub(super) placement: DAffine3,
-    /// What the nodes from the start of the walk to this one change about materials.
+    /// The material changes of the nodes from the start of the walk to this one.
     pub(super) look: Look,
 }
 
 impl<'a> PlacedNode<'a> {
-    /// The same node as a walk sees it that starts in the node itself.
+    /// The same node as the start of a walk.
     pub(super) fn as_origin(&self) -> Self {
         Self { placement: DAffine3::IDENTITY, look: Look::default(), ..self.clone() }
     }
@@ -50,7 +50,7 @@ impl<'a> PlacedNode<'a> {
     }
 }
 
-/// The root nodes of the scene, by their own transforms. Fails unless each node has one place in the hierarchy.
+/// The root nodes of the scene with their own transforms. Fails unless the hierarchy is a tree.
 pub(super) fn roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
     let roots = root_nodes(document);
     check_tree(document, &roots)?;
@@ -66,7 +66,7 @@ fn above_roots<'a>(any: &Node<'a>) -> PlacedNode<'a> {
     }
 }
 
-/// The nodes that are parts: the roots, or what hangs below a root that only wraps the whole scene.
+/// The nodes that are parts: the roots, or the children of a root that only wraps the whole scene.
 pub(super) fn part_roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
     let mut roots = roots(document)?;
     while let [wrapper] = roots.as_slice()
@@ -83,8 +83,8 @@ fn is_wrapper(placed: &PlacedNode) -> bool {
     !holds && !placed.extras.any() && node.children().len() > 0
 }
 
-/// `start` and all below it, parents before children. What hangs below a node with a `part` is not visited: the part's
-/// file stands there instead.
+/// `start` and all nodes below it, parents before children. Nodes below a node with a `part` are left out: the part
+/// file replaces them.
 pub(super) fn subtree<'a>(document: &'a Document, start: PlacedNode<'a>) -> Result<Vec<PlacedNode<'a>>> {
     let (mut visited, mut open) = (Vec::new(), vec![start]);
     while let Some(placed) = open.pop() {
@@ -112,8 +112,8 @@ fn root_nodes(document: &Document) -> Vec<Node<'_>> {
     }
 }
 
-/// Walks the whole hierarchy and fails where a node is met again, be it as its own ancestor or below a second parent:
-/// walks could not end, or grow without bounds.
+/// Walks the whole hierarchy and fails if a node occurs twice, as its own ancestor or below a second parent: later
+/// walks would not end, or could grow without bounds.
 fn check_tree(document: &Document, roots: &[Node]) -> Result<()> {
     let mut parent_of: Vec<Option<Option<usize>>> = vec![None; document.gltf.nodes().len()];
     let mut open: Vec<(Node, Option<usize>)> = roots.iter().map(|root| (root.clone(), None)).collect();

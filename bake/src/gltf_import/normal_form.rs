@@ -1,6 +1,6 @@
-//! The JSON of a glTF file rewritten to the one form that the `gltf` crate reads. The crate refuses, or panics on, much
-//! that the specification allows: integers written as 1.0, lists that may be left out, values that a later version may
-//! add. What this project does not use is removed, so that the crate does not judge it. glTF 2.0 specification, §3 and §5.
+//! Rewrites the JSON of a glTF file to a form that the `gltf` crate accepts. The crate refuses, or panics on, much that
+//! the specification allows: integers written as 1.0, optional lists that are missing, values that a later version may
+//! add. Unused properties are removed, so that the crate does not validate them. glTF 2.0 specification, §3 and §5.
 
 use super::notes::Notes;
 use serde_json::{Map, Value, json};
@@ -8,10 +8,10 @@ use serde_json::{Map, Value, json};
 /// Alternative images of textures, in WebP.
 pub(super) const WEBP: &str = "EXT_texture_webp";
 
-/// The older material model, whose diffuse colour takes the place of the base colour.
+/// The older material model, whose diffuse colour replaces the base colour.
 pub(super) const SPECULAR_GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Rewrites `root`, the JSON of the file that notes call `file`. What is removed although it may matter is noted.
+/// Rewrites `root`, the JSON of a file that notes call `file`. Removed properties that may matter are noted.
 pub(super) fn normalise(root: &mut Value, file: &str, notes: &mut Notes) {
     whole_numbers(root);
     remove_unused(root, file, notes);
@@ -46,13 +46,13 @@ fn items<'a>(of: &'a mut Value, list: &str) -> impl Iterator<Item = (usize, &'a 
     items.into_iter().flatten().enumerate().filter_map(|(index, item)| Some((index, item.as_object_mut()?)))
 }
 
-/// What notes call an object: by its name, or by its place.
+/// The label of an object in notes: its name, or its number.
 fn label(kind: &str, index: usize, object: &Map<String, Value>) -> String {
     let name = object.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
     name.map_or_else(|| format!("{kind} {index}"), |name| format!("{kind} {name}"))
 }
 
-/// Writes numbers without a fraction as integers. JSON has one kind of number, so that 1.0 is an index.
+/// Converts numbers without a fraction to integers. JSON has one kind of number, so 1.0 is a valid index.
 fn whole_numbers(value: &mut Value) {
     // Above this not every integer is an f64.
     const EXACT: f64 = 9_007_199_254_740_992.0;
@@ -72,7 +72,7 @@ fn whole_numbers(value: &mut Value) {
     }
 }
 
-/// Removes what has no part in still, diffuse light.
+/// Removes what does not affect static, diffuse light.
 fn remove_unused(root: &mut Value, file: &str, notes: &mut Notes) {
     let mut take = |list: &str| root.as_object_mut().and_then(|root| root.remove(list)).is_some();
     if take("animations") {
@@ -108,7 +108,7 @@ fn keep_known<T: Copy + Into<Value>>(
     }
 }
 
-/// The image that a texture's extension names comes before the one for readers without the extension.
+/// Selects the image of a texture's extension over the fallback for readers without the extension.
 fn choose_source(texture: &mut Map<String, Value>) {
     let preferred =
         texture.get("extensions").and_then(|extensions| extensions.get(WEBP)?.get("source").cloned());
@@ -117,7 +117,7 @@ fn choose_source(texture: &mut Map<String, Value>) {
     }
 }
 
-/// Specular colours above this are those of metals and not of what is painted on them.
+/// Larger specular colours are those of metals, whose colour is not diffuse.
 const DIELECTRIC: f64 = 0.1;
 
 /// Writes the diffuse colour of the older model as the base colour of a material that is not metallic.
@@ -139,7 +139,7 @@ fn use_diffuse_colour(material: &mut Map<String, Value>, subject: &str, notes: &
     }
 }
 
-/// Keeps the primitives with positions and a known way to draw them, and the attributes that the specification names.
+/// Keeps the primitives with positions and a known mode, and the attributes that are read.
 fn keep_primitives(mesh: &mut Map<String, Value>, subject: &str, notes: &mut Notes) {
     let Some(primitives) = mesh.get_mut("primitives").and_then(Value::as_array_mut) else { return };
     primitives.retain_mut(|primitive| {
@@ -168,7 +168,7 @@ fn is_attribute(name: &str) -> bool {
     name == "POSITION" || set("TEXCOORD_") || set("COLOR_")
 }
 
-/// Makes an orthographic camera of one of an unknown kind: through neither can this project look.
+/// Replaces cameras of unknown kinds by orthographic ones; neither is supported.
 fn settle_camera(camera: &mut Map<String, Value>) {
     let kind = camera.get("type").and_then(Value::as_str).unwrap_or_default();
     if !["perspective", "orthographic"].contains(&kind) {
@@ -178,7 +178,7 @@ fn settle_camera(camera: &mut Map<String, Value>) {
     }
 }
 
-/// Gives a spot the default cone if it has none, and switches lights of unknown kinds off.
+/// Adds the default cone to a spot without one, and switches off lights of unknown kinds.
 fn settle_light(light: &mut Map<String, Value>, subject: &str, notes: &mut Notes) {
     let kind = light.get("type").and_then(Value::as_str).unwrap_or_default().to_owned();
     if kind == "spot" {

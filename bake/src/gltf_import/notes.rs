@@ -1,9 +1,9 @@
-//! Notes about an import that do not stop it. Remarks about meshes, materials, nodes and files become sentences, one for
-//! each remark however often it was made.
+//! Notes about an import that succeeds. Remarks about meshes, materials, nodes and files become sentences, one for each
+//! distinct remark.
 
 use std::collections::HashMap;
 
-/// How many subjects a sentence names before it counts the rest.
+/// The number of subjects that a sentence names; the rest are counted.
 const NAMED: usize = 3;
 
 /// Remarks, in the order in which they were first made.
@@ -14,7 +14,7 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// Remarks that `remark` holds for `subject`.
+    /// Adds `remark` about `subject`.
     pub(super) fn add(&mut self, subject: impl Into<String>, remark: impl Into<String>) {
         let (subject, remark) = (subject.into(), remark.into());
         let at = *self.index.entry(remark.clone()).or_insert(self.remarks.len());

@@ -1,4 +1,4 @@
-//! A `.gltf` or `.glb` file → its [`Document`], with buffers and images; refuses what is not valid glTF 2.0.
+//! Opens a `.gltf` or `.glb` file as a [`Document`], with buffers and images, and refuses files that are not valid glTF 2.0.
 
 use super::buffers::Buffers;
 use super::document::Document;
@@ -27,7 +27,7 @@ const SUPPORTED: [&str; 8] = [
     "KHR_texture_transform",
 ];
 
-/// Reads `path`, its buffers and its images. What the file holds but the importer does not use is noted.
+/// Reads `path`, its buffers and its images. Notes the contents that the importer does not use.
 pub(super) fn read(files: &mut Files, path: &Path, notes: &mut Notes) -> Result<Document> {
     let bytes = files.read(path)?;
     let Chunks { json, binary } = split(&bytes).map_err(|why| not_gltf(path, why))?;
@@ -52,7 +52,7 @@ fn not_gltf(path: &Path, why: impl std::fmt::Display) -> Error {
     )
 }
 
-/// What must be known before the JSON is read at large, as a newer version or a required extension may change the rest.
+/// The properties checked before the rest of the JSON, which a newer version or a required extension may change.
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
 struct Preamble {
@@ -96,7 +96,7 @@ fn check_preamble(path: &Path, json: &Value, notes: &mut Notes) -> Result<()> {
 
 fn parse(path: &Path, json: Value) -> Result<gltf::Document> {
     let mut root: json::Root = serde_json::from_value(json).map_err(|error| not_gltf(path, error))?;
-    // Checked above; the crate's own list lacks extensions that need no code of its.
+    // Checked above; the crate's own list lacks extensions that it need not implement.
     root.extensions_required.clear();
     settle_bounds(path, &mut root)?;
     let mut faults = Vec::new();
@@ -112,8 +112,8 @@ fn parse(path: &Path, json: Value) -> Result<gltf::Document> {
     }
 }
 
-/// Gives every POSITION accessor bounds: they are not used here, but the crate refuses files without them. It also
-/// indexes these accessors before it validates the index.
+/// Adds bounds to every POSITION accessor: they are unused, but the crate refuses files without them. Also checks the
+/// indices of these accessors, which the crate uses before it validates them.
 fn settle_bounds(path: &Path, root: &mut json::Root) -> Result<()> {
     let positions = json::validation::Checked::Valid(json::mesh::Semantic::Positions);
     for primitive in root.meshes.iter().flat_map(|mesh| &mesh.primitives) {
@@ -128,8 +128,8 @@ fn settle_bounds(path: &Path, root: &mut json::Root) -> Result<()> {
     Ok(())
 }
 
-/// Whether the crate finds a fault in what the specification allows: an accessor without a buffer view holds zeros
-/// (§3.6.2.1), and one of an unknown type is only a fault where it is used, which is checked there.
+/// Whether the crate reports a fault that the specification allows: an accessor without a buffer view holds zeros
+/// (§3.6.2.1), and one of an unknown type is a fault only where it is used, which is checked there.
 fn is_legal(place: &str, fault: Fault) -> bool {
     let member =
         place.strip_prefix("accessors[").and_then(|place| place.split_once("].")).map(|(_, member)| member);

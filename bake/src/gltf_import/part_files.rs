@@ -1,5 +1,5 @@
-//! Files that stand for a part: `"part": "file.glb"` in a node's extras. Each becomes a draft that merges all that the
-//! file holds, and what the files it refers to hold in turn. Each file is read once.
+//! Part files: `"part": "file.glb"` in a node's extras. Each file becomes a draft that merges its contents and,
+//! recursively, those of the files it refers to. Each file is read once.
 
 use super::document::Document;
 use super::drafts::{Draft, Settings};
@@ -15,16 +15,16 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Files that refer to files that refer to files: no author nests deeper, and each level could double the surfaces.
+/// The longest chain of part files. Each level could double the surfaces.
 const DEEPEST: usize = 16;
 
-/// The files of a scene and what was learnt from them.
+/// The files of a scene, with drafts and notes.
 pub(super) struct PartFiles {
     pub(super) files: Files,
     pub(super) notes: Notes,
     pub(super) asked: Asked,
     drafts: HashMap<PathBuf, Rc<Draft>>,
-    /// The files that are being read, from the scene to the one whose reference is followed.
+    /// The chain of files that are being read, from the scene on.
     chain: Vec<PathBuf>,
 }
 
@@ -41,13 +41,13 @@ impl PartFiles {
         })
     }
 
-    /// Reads the document at `path`; references from here on are its.
+    /// Reads the document at `path` and adds it to the chain of files.
     pub(super) fn open(&mut self, path: &Path) -> Result<Document> {
         self.chain.push(path.to_path_buf());
         open::read(&mut self.files, path, &mut self.notes)
     }
 
-    /// What `reference` at the node `placed` of the document `from` stands for, and the path of that file.
+    /// The draft of the file that `reference` at the node `placed` of the document `from` refers to, and its path.
     pub(super) fn draft(
         &mut self,
         from: &Document,
@@ -134,7 +134,7 @@ impl PartFiles {
     }
 }
 
-/// The error about a file from which nothing can be baked.
+/// The error for a file without surfaces.
 pub(super) fn no_surfaces(path: &Path) -> Error {
     Error::new(path, "no surfaces", "at least one triangle with an area", "add a mesh to the scene")
 }

@@ -1,7 +1,7 @@
-//! Drafts → parts and instances. A placement becomes a similarity, as form factors do not change under one: what else
-//! the root's transform does is worked into the part. Of a turned and stretched one only the stretch is, so that copies
-//! turned otherwise are still the same part. Then the part is moved so that its coordinates start at zero, and parts with
-//! equal contents become one.
+//! Turns drafts into parts and instances. Placements become similarities, under which form factors do not change: the
+//! rest of the root's transform is applied to the part. Of a rotation with a stretch, only the stretch is applied, so
+//! that rotated copies share a part. Parts are then moved so that their coordinates start at zero, and parts with equal
+//! contents are merged.
 
 use super::drafts::{Draft, Paints, Settings};
 use super::materials::{Paint, same_material};
@@ -12,13 +12,13 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
-/// Splits a root's transform in what is worked into the part and what places it.
+/// Splits a root's transform into the linear map that is applied to the part, and its placement.
 pub(super) fn split(transform: DAffine3) -> (DMat3, DAffine3) {
     let linear = transform.matrix3;
     if is_similarity(linear) {
         return (DMat3::IDENTITY, transform);
     }
-    // f32 is what files scale by: so it comes out the same to the bit however the node is turned.
+    // Rounded to f32, the precision of files, so that it is bit-identical for all rotations of the node.
     let lengths = [linear.x_axis, linear.y_axis, linear.z_axis].map(|axis| f64::from(axis.length() as f32));
     let stretch = DMat3::from_diagonal(DVec3::from_array(lengths));
     let turn = linear * DMat3::from_diagonal(DVec3::from_array(lengths.map(f64::recip)));
@@ -28,7 +28,7 @@ pub(super) fn split(transform: DAffine3) -> (DMat3, DAffine3) {
     }
 }
 
-/// Whether `linear` is a rotation, perhaps mirrored, times a scale: LᵀL = s²·1. The square doubles the tolerance.
+/// Whether `linear` is a rotation or reflection times a scale: LᵀL = s²·1. The square doubles the tolerance.
 fn is_similarity(linear: DMat3) -> bool {
     let gram = linear.transpose() * linear;
     let square = (gram.x_axis.x + gram.y_axis.y + gram.z_axis.z) / 3.0;
@@ -37,14 +37,14 @@ fn is_similarity(linear: DMat3) -> bool {
     square > 0.0 && off <= 2.0 * SIMILARITY * square
 }
 
-/// A part, and what is known of how it was made.
+/// A part, with its origin in its draft.
 pub(super) struct Settled {
     pub(super) part: Part,
-    /// What its materials were made of, in their order.
+    /// The paints of its materials, in order.
     pub(super) paints: Vec<Paint>,
-    /// Where its coordinates start in the draft's.
+    /// Its origin in the draft's coordinates.
     pub(super) start: DVec3,
-    /// What was left out of it.
+    /// The dropped faces.
     pub(super) dropped: Dropped,
 }
 
@@ -62,7 +62,7 @@ pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: Str
     for surface in placed {
         // Adding 0 turns −0 into 0, so that equal parts are equal bit by bit.
         let corners = surface.corners.map(|corner| corner - start + 0.0);
-        // Again: beside a corner at 1e30 m this subtraction leaves nothing of a wall.
+        // Tested again: beside a corner at 1e30 m, this subtraction cancels all digits of a wall.
         if !has_area(&corners, rounding) {
             dropped.without_area += 1;
         } else if !seen.first_time(&corners) {
@@ -85,7 +85,7 @@ pub(super) fn settle(draft: &Draft, linear: DMat3, settings: Settings, name: Str
     Settled { part, paints: paints.0, start, dropped }
 }
 
-/// What transforms may add to a coordinate of this magnitude: sums of a few rounded products.
+/// Rounding of a transformed coordinate of this magnitude: sums of a few rounded products.
 fn rounding(magnitude: f64) -> f64 {
     16.0 * f64_spacing(magnitude)
 }
@@ -100,13 +100,13 @@ fn lowest_corner(surfaces: &[Surface]) -> DVec3 {
 pub(super) struct Catalogue {
     pub(super) parts: Vec<Part>,
     by_content: HashMap<u64, Vec<PartId>>,
-    /// How many parts were to have each name.
+    /// The number of parts with each name.
     named: HashMap<String, usize>,
 }
 
 impl Catalogue {
-    /// The id of the part with the contents of `part`. Of parts that would have one name, such as a crate and a stretched
-    /// crate, the later ones are numbered: the cache remembers by name what a part was when it was last baked.
+    /// The id of the part with the contents of `part`. Parts of the same name, such as a crate and a stretched crate,
+    /// are numbered, because the cache finds older versions of a part by its name.
     pub(super) fn id(&mut self, mut part: Part) -> PartId {
         let alike = self.by_content.entry(content_hash(&part)).or_default();
         if let Some(&known) = alike.iter().find(|id| same_content(&self.parts[id.index()], &part)) {
@@ -139,7 +139,7 @@ fn content_hash(part: &Part) -> u64 {
     hasher.finish()
 }
 
-/// Whether two parts differ in nothing but names.
+/// Whether two parts are equal except for names.
 fn same_content(left: &Part, right: &Part) -> bool {
     (left.element_size, left.local_solver) == (right.element_size, right.local_solver)
         && left.surfaces == right.surfaces

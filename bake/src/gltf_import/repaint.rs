@@ -1,5 +1,5 @@
-//! Changes of the materials below a node by its extras: `emission_scale`, and `materials` by name. Turns paints as files
-//! have them into paints as they look there, and notes names that no material has.
+//! Material changes in a node's extras, for everything below the node: `emission_scale`, and `materials` by name.
+//! Applies them to paints, and notes names without a material.
 
 use super::materials::Paint;
 use super::notes::Notes;
@@ -8,10 +8,10 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-/// Changes by the name of the material.
+/// Changes, by name of the material.
 pub(super) type Changes = BTreeMap<String, Change>;
 
-/// What becomes of a material; what is not told stays.
+/// Changes of one material; missing properties stay.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
 pub(super) struct Change {
@@ -20,7 +20,7 @@ pub(super) struct Change {
     emissive_strength: Option<f64>,
 }
 
-/// The changes that `value` in the extras tells, if they make sense.
+/// Parses the changes in `value` of the extras; none if they are invalid.
 pub(super) fn changes(value: &Value) -> Option<Changes> {
     let changes: Changes = serde_json::from_value(value.clone()).ok()?;
     changes.values().all(Change::is_possible).then_some(changes)
@@ -41,24 +41,24 @@ impl Change {
     }
 }
 
-/// The changes that one node asks for.
+/// The changes of one node.
 #[derive(Debug)]
 pub(super) struct Repaint {
     /// The node's number in its file.
     node: usize,
-    /// What the node is called.
+    /// The name of the node.
     name: String,
     changes: Changes,
 }
 
 impl Repaint {
-    /// The changes that `node`, which is called `name`, asks for.
+    /// The changes of `node`, called `name`.
     pub(super) fn new(node: &gltf::Node, name: String, changes: &Changes) -> Self {
         Self { node: node.index(), name, changes: changes.clone() }
     }
 }
 
-/// What nodes change about the materials of what hangs below them.
+/// The combined changes of a chain of nodes to the materials below them.
 #[derive(Debug, Clone)]
 pub(super) struct Look {
     /// Product of their emission scales.
@@ -87,7 +87,7 @@ impl Look {
         changes.fold(paint.clone(), |paint, change| change.on(paint))
     }
 
-    /// What tells this look from others in one file.
+    /// A key that distinguishes looks in one file.
     pub(super) fn recipe(&self) -> LookRecipe {
         let repaints = self.repaints.iter().map(|repaint| repaint.node).collect();
         LookRecipe { emission_scale: self.emission_scale.to_bits(), repaints }
@@ -103,12 +103,12 @@ pub(super) struct LookRecipe {
     repaints: Vec<usize>,
 }
 
-/// Which materials nodes ask to repaint, and whether there were any. By number and name of the node.
+/// The materials that nodes repaint, and whether they exist. By number and name of the node.
 #[derive(Default)]
 pub(super) struct Asked(BTreeMap<(usize, String, String), bool>);
 
 impl Asked {
-    /// Takes up that `look` was to change `paints`.
+    /// Records that `look` was applied to `paints`.
     pub(super) fn hear<'a>(&mut self, look: &Look, paints: impl IntoIterator<Item = &'a Paint> + Clone) {
         for repaint in &look.repaints {
             for material in repaint.changes.keys() {
@@ -118,7 +118,7 @@ impl Asked {
         }
     }
 
-    /// Notes the materials that were not there.
+    /// Notes the materials that do not exist.
     pub(super) fn note(&self, notes: &mut Notes) {
         for ((_, node, material), _) in self.0.iter().filter(|(_, met)| !**met) {
             notes.add(node, format!("its extras repaint the material `{material}`, which nothing there has"));

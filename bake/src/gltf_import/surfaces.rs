@@ -1,5 +1,5 @@
-//! Triangles → clean surfaces: faces without area and repeated faces go, two triangles that are the halves of a
-//! quad become one, unless they lie otherwise in a lightmap. The surfaces of a primitive keep the order of its triangles.
+//! Turns triangles into clean surfaces: drops faces without area and duplicates, and joins triangles that are halves of
+//! a quad, unless their lightmap coordinates differ. The surfaces of a primitive keep the order of its triangles.
 
 use super::triangles::Triangles;
 use crate::geometry::point_key::{PointKey, point_key};
@@ -9,15 +9,15 @@ use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::AddAssign;
 
-/// Sine of the bluntest corner of a quad that is no parallelogram; cutting up a blunter one makes needles.
+/// Smallest sine of a corner of a quad that is no parallelogram; blunter corners lead to needles when the quad is cut.
 const BLUNTEST: f64 = 0.1;
-/// How far corners may be off their place in a lightmap, in its widths: a tenth of a texel of 4096, or a step of 16-bit
-/// coordinates and a half.
+/// Tolerance of lightmap coordinates, in widths of the lightmap: a tenth of a texel of 4096, or one and a half steps of
+/// 16-bit coordinates.
 const LIGHTMAP_STEP: f64 = 2.5e-5;
-/// Triangles looked at across one edge; thousands around one edge would otherwise take quadratic time.
+/// Triangles considered across one edge; thousands around one edge would otherwise take quadratic time.
 const NEIGHBOURS: usize = 16;
 
-/// What was left out.
+/// Counts of dropped faces.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(super) struct Dropped {
     pub(super) without_area: usize,
@@ -35,10 +35,10 @@ impl AddAssign for Dropped {
 pub(super) struct Surfaces {
     /// All of material 0.
     pub(super) kept: Vec<Surface>,
-    /// The triangles that they were made of, if colours vary over them.
+    /// Their source triangles, if colours vary over them.
     pub(super) textured: Vec<TexturedTriangle>,
     pub(super) dropped: Dropped,
-    /// What rounding left undecided of the largest coordinate, in the mesh's unit.
+    /// The rounding step of the largest coordinate, in the mesh's unit.
     pub(super) step: f64,
 }
 
@@ -65,7 +65,7 @@ pub(super) fn f64_spacing(magnitude: f64) -> f64 {
     magnitude.next_up() - magnitude
 }
 
-/// Whether a polygon is higher than what rounding makes of a flat one: half a `spacing` at its coordinates.
+/// Whether a polygon is higher than the rounding of its coordinates, half a `spacing`.
 pub(super) fn has_area(corners: &Corners, spacing: fn(f64) -> f64) -> bool {
     let points = corners.as_slice();
     let longest = edges(points).map(DVec3::length).fold(0.0, f64::max);
@@ -91,7 +91,7 @@ impl Welder {
     }
 }
 
-/// The faces met so far, by their corners, from whichever of them they start.
+/// A set of faces, independent of the first corner of each.
 #[derive(Default)]
 pub(super) struct FaceSet {
     welder: Welder,
@@ -99,7 +99,7 @@ pub(super) struct FaceSet {
 }
 
 impl FaceSet {
-    /// Whether a face with these corners and this orientation is met for the first time.
+    /// Adds a face with these corners and this orientation; returns whether it was not in the set.
     pub(super) fn first_time(&mut self, corners: &Corners) -> bool {
         let points = corners.as_slice();
         let mut key = [usize::MAX; 4];
@@ -113,10 +113,10 @@ impl FaceSet {
     }
 }
 
-/// A triangle worth keeping.
+/// A triangle with an area that is no duplicate.
 struct CleanTriangle {
     corners: [DVec3; 3],
-    /// Where they lie in a lightmap.
+    /// Their lightmap coordinates.
     lightmap: Option<[DVec2; 3]>,
     /// Its position in the primitive.
     source: usize,
@@ -138,8 +138,8 @@ fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<CleanTriangle>,
     (kept, dropped)
 }
 
-/// Pairs the halves of quads. Exporters write the two triangles of a quad one after the other, so there any flat convex
-/// quad is taken for one that was modelled; of what is left, lowest index first, only parallelograms are.
+/// Joins the halves of quads. Exporters write the two triangles of a quad one after the other, so consecutive triangles
+/// are joined if they form a flat convex quad; the others, lowest index first, only if they form a parallelogram.
 fn pair(kept: &[CleanTriangle], step: f64) -> Vec<Surface> {
     let mut quads: Vec<Option<Quad>> = vec![None; kept.len()];
     let mut paired = vec![false; kept.len()];
@@ -177,10 +177,10 @@ fn pair(kept: &[CleanTriangle], step: f64) -> Vec<Surface> {
     kept.iter().enumerate().filter_map(made).collect()
 }
 
-/// Corners, and where they lie in a lightmap.
+/// Corners, and their lightmap coordinates.
 type Quad = ([DVec3; 4], Option<[DVec2; 4]>);
 
-/// The quad of which the two triangles are halves, starting at the first one's first corner.
+/// The quad that the two triangles are halves of, starting at the first one's first corner.
 fn halves_of(halves: [&CleanTriangle; 2]) -> Option<Quad> {
     let [first, second] = halves.map(|half| half.corners);
     for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
@@ -203,8 +203,8 @@ fn halves_of(halves: [&CleanTriangle; 2]) -> Option<Quad> {
     None
 }
 
-/// Where the corners of `quad` lie in a lightmap, if the affine map of the first half, from whose edge `i` it was made,
-/// takes those of the second, from whose edge `j` it was made, where they are.
+/// The lightmap coordinates of the corners of `quad`, if one affine map gives those of both halves. The halves meet in
+/// edge `i` of the first and edge `j` of the second.
 fn joined(
     quad: &[DVec3; 4],
     first: [DVec2; 3],
@@ -223,7 +223,7 @@ fn joined(
     (shared && near(mapped, places[1])).then_some(places)
 }
 
-/// How far corners may be off beside a diagonal of this length.
+/// The tolerance of corner positions of a quad.
 fn slack(quad: &[DVec3; 4], step: f64) -> f64 {
     let [a, b, c, d] = *quad;
     (ROUNDED_CORNERS * step).min(BENT_QUAD * (c - a).length().max((d - b).length()))
@@ -234,7 +234,7 @@ fn is_parallelogram(quad: &[DVec3; 4], step: f64) -> bool {
     ((a - b) + (c - d)).abs().max_element() <= slack(quad, step)
 }
 
-/// Whether the quad is flat and turns well to the same side at each corner.
+/// Whether the quad is flat and convex, without blunt corners.
 fn is_convex(quad: &[DVec3; 4], step: f64) -> bool {
     let [a, b, c, d] = *quad;
     let normal = (c - a).cross(d - b).normalize_or_zero();
@@ -245,7 +245,7 @@ fn is_convex(quad: &[DVec3; 4], step: f64) -> bool {
     turns && (b - a).dot(normal).abs() <= slack(quad, step)
 }
 
-/// Which triangles lie across each edge of each triangle.
+/// The triangles across each edge of each triangle.
 struct Neighbours {
     corners: Vec<[usize; 3]>,
     by_edge: HashMap<(usize, usize), Vec<usize>>,

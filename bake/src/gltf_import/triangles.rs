@@ -1,5 +1,5 @@
-//! Primitives as triangles: corner positions in the order of the file, from a primitive's accessors. Triangle lists,
-//! strips and fans, indexed or not; points and lines have no area and give nothing.
+//! Reads primitives as triangles: corner positions in the order of the file, from triangle lists, strips and fans,
+//! indexed or not. Points and lines have no triangles.
 
 use super::accessors::{check_type, components};
 use super::coordinates::{Use, texture_coordinates, vertex_colours};
@@ -15,17 +15,17 @@ use gltf::mesh::Mode;
 pub(super) struct Triangles {
     /// Corners, counter-clockwise seen from the front, in mesh coordinates.
     pub(super) corners: Vec<[DVec3; 3]>,
-    /// Where the corners lie in a lightmap, if the author has one.
+    /// The lightmap coordinates of the corners, if there are any.
     pub(super) lightmap: Option<Vec<[DVec2; 3]>>,
-    /// The same triangles with what colours them, if anything does. All of material 0.
+    /// The same triangles with textures and vertex colours, if there are any. All of material 0.
     pub(super) textured: Option<Vec<TexturedTriangle>>,
-    /// Whether positions were rounded to f32 on their way in.
+    /// Whether positions were rounded to f32.
     pub(super) rounded: bool,
     /// Corners at the end of a list that are too few for a triangle.
     pub(super) left_over: usize,
 }
 
-/// The triangles of `primitive`, whose material has textures as `uses` says, or nothing where it has none by its kind.
+/// The triangles of `primitive`, whose material uses the textures `uses`; none for primitives of points or lines.
 /// `mesh` names it in errors.
 pub(super) fn triangles(
     document: &Document,
@@ -83,7 +83,7 @@ fn positions(document: &Document, accessor: &gltf::Accessor, mesh: &str) -> Resu
     Ok(components(document, accessor, &what)?.chunks_exact(3).map(DVec3::from_slice).collect())
 }
 
-/// The colours of `vertices` vertices of `primitive`, and where they lie in its material's textures; none if all are alike.
+/// The colours and texture coordinates of `vertices` vertices of `primitive`; none if colours do not vary.
 struct Colouring {
     colours: Option<Vec<Rgb>>,
     reflectance_at: Option<Vec<DVec2>>,

@@ -1,14 +1,15 @@
 //! The average of a texture over a polygon, exact: texels are squares of one colour.
 //!
-//! ∬ f dx dy = ∮ G dy, where G(x, y) = ∫_0^x f(x', y) dx' (Green). Inside a texel G is linear along an edge, so its value in
-//! the middle of what an edge has of a texel, times the height of that, is exact. What a footprint costs so grows with
-//! its outline and not with its area. Squares, and not the bilinear blend that screens show, because both have the same
-//! average over whole texels, and because blends would reach across the edge of what an author laid out.
+//! ∬ f dx dy = ∮ G dy, where G(x, y) = ∫_0^x f(x', y) dx' (Green). Inside a texel G is linear along an edge, so its
+//! value in the middle of the edge's piece in the texel, times the height of that piece, is exact. The cost of a
+//! footprint grows with its outline and not with its area. Texels are squares rather than bilinearly interpolated
+//! because both have the same average over whole texels, and because interpolation would reach across the edges of the
+//! author's layout.
 //!
-//! A footprint that is a point or a line up to rounding has no area to divide by: faces whose coordinates all lie on one
-//! colour of a palette, or along a gradient of it. There the polygon itself is divided by the texels that the line crosses.
-//! A texel holds its left and upper border, so a point on the border of two texels has the colour of the one to the right
-//! or below, as the image repeats, mirrors or ends there.
+//! A footprint that is a point or a line up to rounding has no area to divide by, as for faces whose coordinates all
+//! lie on one colour of a palette, or along a gradient. In this case, the average over the polygon itself is computed,
+//! split at the texels that the line crosses. A texel includes its left and upper border, so a point on the border of
+//! two texels has the colour of the one to the right or below, after wrapping.
 
 use super::area_and_middle;
 use super::sums::Sums;
@@ -17,13 +18,13 @@ use equilux_formats::{Rgb, Wrap};
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
-/// Footprints whose edges cross more texels than this, in images that repeat, take the average of the image.
+/// Footprints in repeating images whose edges cross more texels than this get the average of the image.
 const MOST_CROSSINGS: f64 = 1e6;
-/// Footprints narrower than this, in texels, are lines: far more than rounding, far less than would show.
+/// Footprints narrower than this, in texels, are lines: far above rounding, far below what is visible.
 const LINE: f64 = 1e-6;
 
 impl Sums<'_> {
-    /// The average over a planar convex polygon, of which `at` says where its points lie, in widths and heights of the image.
+    /// The average over a planar convex polygon. `at` returns the texture coordinates of its points.
     pub(super) fn mean(&self, polygon: &[DVec3], at: impl Fn(DVec3) -> DVec2) -> Rgb {
         let size = DVec2::from_array(self.texture.size.map(f64::from));
         let start = self.period_of(at(polygon[0]) * size);
@@ -44,7 +45,7 @@ impl Sums<'_> {
         }
     }
 
-    /// The average inside corners, counted in texels.
+    /// The average over a footprint with these corners, in texels.
     fn inside(&self, corners: &[DVec2]) -> Rgb {
         let from = corners[0];
         let area = edges(corners).map(|(p, q)| (p - from).perp_dot(q - from)).sum::<f64>() / 2.0;
@@ -59,7 +60,7 @@ impl Sums<'_> {
         sum / area
     }
 
-    /// The average over a polygon whose points lie on a line as `at` says, counted in texels.
+    /// The average over a polygon whose footprint is a line. `at` returns the position of its points, in texels.
     fn along_line(&self, polygon: &[DVec3], at: impl Fn(DVec3) -> DVec2, [from, to]: [DVec2; 2]) -> Rgb {
         let along = to - from;
         let share = |p: DVec3| (at(p) - from).dot(along) / along.length_squared();
@@ -77,13 +78,13 @@ impl Sums<'_> {
         if whole > 0.0 { sum / whole } else { self.at((from + to) / 2.0) }
     }
 
-    /// Where an edge passes from texel to texel, in shares of it from 0 to 1.
+    /// The shares of an edge, 0 to 1, where it passes from texel to texel.
     fn stops(&self, from: DVec2, to: DVec2) -> Vec<f64> {
         let mut stops = vec![0.0, 1.0];
         for axis in 0..2 {
             let (low, high) = (from[axis].min(to[axis]), from[axis].max(to[axis]));
             let (low, high) = match self.texture.wrap[axis] {
-                // Beyond the edge all texels are one.
+                // Beyond the edge of the image all texels are equal.
                 Wrap::Clamp => (low.max(-1.0), high.min(f64::from(self.texture.size[axis]) + 1.0)),
                 Wrap::Repeat | Wrap::Mirror => (low, high),
             };
@@ -97,14 +98,14 @@ impl Sums<'_> {
     }
 }
 
-/// Corners of a polygon in an image, counted in texels.
+/// Corners of a polygon in an image, in texels.
 type Footprint = SmallVec<[DVec2; 10]>;
 
 fn edges(corners: &[DVec2]) -> impl Iterator<Item = (DVec2, DVec2)> {
     (0..corners.len()).map(|i| (corners[i], corners[(i + 1) % corners.len()]))
 }
 
-/// The place halfway between two shares of an edge; on a line along the image that the edge lies on.
+/// The point halfway between two shares of an edge; exact for edges along the axes of the image.
 fn between(from: DVec2, to: DVec2, ends: &[f64]) -> DVec2 {
     from + (to - from) * ((ends[0] + ends[1]) / 2.0)
 }
@@ -213,8 +214,8 @@ mod tests {
     }
 
     proptest! {
-        /// Any part of any face whose coordinates lie on a point, within 1e-7 of it, or on a line inside a texel, in any copy of
-        /// the image.
+        /// Any part of any face whose coordinates lie on a point, within 1e-7 of it, or on a line inside a texel, in
+        /// any copy of the image.
         #[test]
         fn a_point_or_a_line_has_the_colour_of_its_texel(
             size in prop::array::uniform2(1..300_u32),

@@ -1,7 +1,7 @@
 //! The average colour of each element, in linear light, from textures and vertex colours of the triangles of its surface.
 //!
-//! Elements find the triangles they lie in by place and material. So elements, and with them form factors, are the same
-//! whatever is painted on them.
+//! Elements are matched with triangles by position and material. Elements, and with them form factors, therefore do not
+//! depend on textures.
 
 mod mean;
 mod sums;
@@ -17,10 +17,10 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use sums::Sums;
 
-/// Cosine of the angle up to which an element and a triangle look to the same side.
+/// Cosine of the angle up to which an element and a triangle face the same way.
 const SAME_SIDE: f64 = 0.5;
 
-/// What textures make of every element.
+/// The tints of all elements.
 pub fn tints(geometry: &Geometry, materials: &[Material], textured: &[TexturedTriangle]) -> Tints {
     if textured.is_empty() {
         return Tints::plain(geometry.elements.len());
@@ -31,7 +31,7 @@ pub fn tints(geometry: &Geometry, materials: &[Material], textured: &[TexturedTr
     Tints { reflectance, emission }
 }
 
-/// Textured triangles, to be asked for colours.
+/// Textured triangles with an index, for colour queries.
 #[derive(Debug)]
 pub struct Coat<'a> {
     materials: &'a [Material],
@@ -39,7 +39,7 @@ pub struct Coat<'a> {
     tree: BoxTree,
     /// By the address of the texture.
     sums: HashMap<usize, Sums<'a>>,
-    /// How far from a polygon its triangle may be, metres, but for what a bent quad adds.
+    /// Largest distance between a polygon and its triangle, metres, without the bend of a quad.
     slack: f64,
 }
 
@@ -52,7 +52,7 @@ struct Sheet<'a> {
     longest: f64,
 }
 
-/// What of a polygon lies on a triangle.
+/// The part of a polygon that lies on a triangle.
 struct Share<'a> {
     sheet: &'a Sheet<'a>,
     piece: Polygon,
@@ -75,7 +75,7 @@ impl<'a> Coat<'a> {
         Self { materials, tree: BoxTree::new(&boxes), triangles, sums, slack }
     }
 
-    /// What a planar convex polygon's reflectance and emission are multiplied by: averages over it.
+    /// The factors on the reflectance and emission of a planar convex polygon: averages over it.
     pub fn tint(&self, corners: &[DVec3], normal: DVec3, material: MaterialId) -> (Rgb, Rgb) {
         let mut shares = self.shares(corners, normal, material);
         let nearest = shares.iter().map(|share| share.distance).fold(f64::INFINITY, f64::min);
@@ -84,7 +84,7 @@ impl<'a> Coat<'a> {
         let (mut covered, mut reflectance, mut emission) = (0.0, Rgb::BLACK, Rgb::BLACK);
         for Share { sheet, piece, .. } in &shares {
             let (area, middle) = area_and_middle(piece);
-            // What has no area but rounding has a colour all the same.
+            // Polygons without an area beyond rounding have a colour too.
             let area = area.max(f64::MIN_POSITIVE);
             let tint = |texture: &Option<Arc<Texture>>, places: Option<[DVec2; 3]>| {
                 let (Some(texture), Some(places)) = (texture, places) else { return Rgb::WHITE };
@@ -99,7 +99,7 @@ impl<'a> Coat<'a> {
                 emission[c] += area * shining[c];
             }
         }
-        // What no triangle covers is plain, but for the gaps beside a bent quad.
+        // Parts that no triangle covers are not tinted, except gaps beside a bent quad.
         let area = area_and_middle(corners).0;
         let plain = if area - covered > BENT * area { area - covered } else { 0.0 };
         let average = |sums: Rgb| sums.map(|sum| ((sum + plain) / (covered + plain)).clamp(0.0, 1.0));
@@ -145,7 +145,7 @@ impl<'a> Sheet<'a> {
         Aabb::around(self.triangle.corners).grown(self.slack(joined))
     }
 
-    /// What of a polygon lies over the triangle.
+    /// The part of a polygon over the triangle.
     fn over(&self, corners: &[DVec3]) -> Option<Polygon> {
         let mut rest = Polygon::from_slice(corners);
         for side in 0..3 {
@@ -168,7 +168,7 @@ impl<'a> Sheet<'a> {
         [1.0 - second - third, second, third]
     }
 
-    /// By differences, so that corners in one place, or on one line along the image, are exactly there.
+    /// By differences, so that coincident corners, and corners on one line along the image, map exactly.
     fn at(&self, p: DVec3, [a, b, c]: [DVec2; 3]) -> DVec2 {
         let [_, second, third] = self.weights(p);
         a + (b - a) * second + (c - a) * third

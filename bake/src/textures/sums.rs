@@ -1,12 +1,12 @@
-//! A texture and what it takes to find averages of it: colours of single texels, and sums along rows from any column, as the
-//! image repeats, mirrors or ends there. Places are counted in texels.
+//! A texture with prefix sums for computing averages: colours of single texels, and sums along rows, with wrapping.
+//! Positions are in texels.
 
 use equilux_formats::{Rgb, Texture, Wrap};
 use glam::{DVec2, dvec2};
 
-/// The value of a texel of full colour and alpha.
+/// The value of a texel with full colour and alpha.
 const ONE: f64 = (1_u64 << 32) as f64 * 255.0;
-/// Sums along rows are kept at every so many texels.
+/// Distance of stored sums along rows, in texels.
 const STRIDE: usize = 16;
 
 /// A texture with sums along its rows.
@@ -41,7 +41,7 @@ impl<'a> Sums<'a> {
         sums
     }
 
-    /// Where the image begins of which a place, counted in texels, lies in a copy: numbers near zero keep their digits.
+    /// The start of the copy of the image that a position, in texels, lies in. Positions relative to it keep their digits.
     pub(super) fn period_of(&self, place: DVec2) -> DVec2 {
         let start = |axis: usize| {
             let size = f64::from(self.texture.size[axis]);
@@ -61,20 +61,20 @@ impl<'a> Sums<'a> {
         sum / (ONE * (width * height) as f64)
     }
 
-    /// The colour at a place, counted in texels.
+    /// The colour at a position, in texels.
     pub(super) fn at(&self, place: DVec2) -> Rgb {
         let [column, row] = [0, 1].map(|axis| self.wrapped(place[axis].floor(), axis));
         Rgb(self.texel(column, row).map(|value| value as f64 / ONE))
     }
 
-    /// The sum of the colours along a row from column 0 to a place, in texels; negative left of it.
+    /// The sum of the colours along a row from column 0 to a position, in texels; negative to the left.
     pub(super) fn left_of(&self, place: DVec2) -> Rgb {
         let (row, column) = (self.wrapped(place.y.floor(), 1), place.x.floor());
         let (whole, texel) = (self.along(column, row), self.at(place));
         whole + texel * (place.x - column)
     }
 
-    /// The sum from column 0 to any, left of it counted as negative.
+    /// The sum from column 0 to any column; negative to the left.
     fn along(&self, column: f64, row: usize) -> Rgb {
         let width = self.texture.size[0] as usize;
         let sum = |column: usize| Rgb(self.before(column, row).map(|sum| sum as f64 / ONE));
@@ -99,7 +99,7 @@ impl<'a> Sums<'a> {
         total * periods + rest
     }
 
-    /// The texel that stands at a column (axis 0) or row (axis 1).
+    /// The texel at a column (axis 0) or row (axis 1), after wrapping.
     fn wrapped(&self, at: f64, axis: usize) -> usize {
         let size = f64::from(self.texture.size[axis]);
         let inside = match self.texture.wrap[axis] {

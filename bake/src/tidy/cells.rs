@@ -1,4 +1,4 @@
-//! A surface cut into cells by others that lie in its plane: of each cell it is known which of its sides can be seen.
+//! Cuts a surface into cells along other surfaces in its plane, and determines which sides of each cell are visible.
 //!
 //! All corners are in the coordinates of the surface's part.
 
@@ -7,7 +7,7 @@ use crate::geometry::polygon::{Polygon, Side, clip, quads_and_triangles};
 use equilux_formats::{Corners, Part, Surface};
 use glam::{DVec2, DVec3};
 
-/// A convex polygon with the side that counts: corners run counter-clockwise seen from there.
+/// One side of a convex polygon; corners run counter-clockwise as seen from that side.
 #[derive(Debug, Clone)]
 pub(super) struct Facing {
     /// Its corners, metres.
@@ -37,7 +37,7 @@ impl Facing {
         Aabb::around(&self.corners)
     }
 
-    /// Whether two sides lie in one plane and look the same way, and lie on each other by more than `tolerance`, metres.
+    /// Whether two sides lie in one plane, face the same way, and overlap by more than `tolerance`, metres.
     pub(super) fn overlaps(&self, other: &Self, tolerance: f64) -> bool {
         let [small, large] = if self.reach() < other.reach() { [self, other] } else { [other, self] };
         let height = |p: &DVec3| large.normal.dot(*p - large.corners[0]).abs();
@@ -50,7 +50,7 @@ impl Facing {
         self.corners.iter().map(|&p| (p - self.corners[0]).length_squared()).fold(0.0, f64::max)
     }
 
-    /// For each edge, how far a point lies on its inner side.
+    /// For each edge, the distance of a point on its inner side.
     fn edges(&self) -> impl Iterator<Item = impl Fn(DVec3) -> f64> + '_ {
         let next = |i: usize| self.corners[(i + 1) % self.corners.len()];
         self.corners.iter().enumerate().map(move |(i, &from)| {
@@ -59,7 +59,7 @@ impl Facing {
         })
     }
 
-    /// What of `polygon` lies inside the edges by more than `depth`.
+    /// The part of `polygon` that lies inside the edges by more than `depth`.
     fn common(&self, polygon: &[DVec3], depth: f64) -> Polygon {
         let mut rest = Polygon::from_slice(polygon);
         for edge in self.edges() {
@@ -73,7 +73,7 @@ impl Facing {
     }
 }
 
-/// A convex piece of a surface, and which of its sides can be seen.
+/// A convex piece of a surface, and which of its sides are visible.
 #[derive(Debug, Clone)]
 struct Cell {
     corners: Polygon,
@@ -81,8 +81,7 @@ struct Cell {
     back: bool,
 }
 
-/// The pieces of `surface` of `part` that can be seen where `covers` lie on it. Pieces narrower than `tolerance`, metres, are
-/// dropped.
+/// The visible pieces of `surface` of `part` under `covers`. Pieces narrower than `tolerance`, metres, are dropped.
 pub(super) fn seen_pieces(part: &Part, surface: &Surface, covers: &[Facing], tolerance: f64) -> Vec<Surface> {
     let back = part.is_two_sided(surface);
     let own = Facing::of(&surface.corners, back);
@@ -97,7 +96,7 @@ pub(super) fn seen_pieces(part: &Part, surface: &Surface, covers: &[Facing], tol
 }
 
 impl Cell {
-    /// The cell with the side that a cover lies on hidden where it does.
+    /// The cell divided along a cover, with the covered side of the covered piece hidden.
     fn under(self, cover: &Facing, on_front: bool, tolerance: f64) -> Vec<Self> {
         let hides = if on_front { self.front } else { self.back };
         if !hides || cover.common(&self.corners, tolerance).is_empty() {
@@ -129,7 +128,7 @@ impl Cell {
     }
 }
 
-/// Where the corners of a piece lie in the lightmap of the whole, on the affine map of its first three corners.
+/// The lightmap coordinates of a piece's corners, by the affine map of the whole's first three corners.
 fn places_of(piece: &Corners, whole: &Corners, places: [DVec2; 4]) -> [DVec2; 4] {
     let [a, b, c] = std::array::from_fn(|i| whole.as_slice()[i]);
     let across = (b - a).cross(c - a);
@@ -142,7 +141,7 @@ fn places_of(piece: &Corners, whole: &Corners, places: [DVec2; 4]) -> [DVec2; 4]
     std::array::from_fn(|i| place(corners[i.min(corners.len() - 1)]))
 }
 
-/// About how wide a polygon is where it is narrowest: its area over its longest edge.
+/// Approximate smallest width of a polygon: its area over its longest edge.
 fn width(corners: &[DVec3], normal: DVec3) -> f64 {
     let from = corners[0];
     let double_area: DVec3 = corners.windows(2).skip(1).map(|e| (e[0] - from).cross(e[1] - from)).sum();

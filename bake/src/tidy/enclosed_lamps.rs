@@ -1,8 +1,7 @@
-//! Lamps inside closed opaque shells: scene → lamps that light nothing outside the shell around them, such as one in a bulb
-//! whose glass is opaque here.
+//! Finds lamps inside closed opaque shells, which light nothing outside, such as a lamp in a bulb whose glass is opaque here.
 //!
-//! A room is a shell around its lamps, too. It is none of these: it looks inwards only, or holds more than lamps, or is
-//! large in its scene.
+//! A room is also a shell around its lamps. It is distinguished by facing inwards only, containing more than lamps, or
+//! being large in its scene.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::shells::{Shell, closed_shells, winding_number};
@@ -13,7 +12,7 @@ use glam::DVec3;
 /// A lamp that lights nothing outside a shell.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EnclosedLamp {
-    /// Its name, or that of the instance that emits.
+    /// Its name, or that of the emitting instance.
     pub lamp: String,
     /// The instance around it.
     pub shell: String,
@@ -25,7 +24,7 @@ const INSIDE: f64 = 0.99;
 /// A two-sided shell is a room if its diagonal is more than this share of the scene's.
 const LARGE: f64 = 0.5;
 
-/// The lamps of `scene` that stand in closed shells, each with the smallest shell around it.
+/// The lamps of `scene` in closed shells, each with the smallest shell around it.
 pub fn enclosed_lamps(scene: &Scene) -> Vec<EnclosedLamp> {
     let lamps: Vec<Lamp> = lamps(scene);
     let mut found: Vec<Option<(f64, String)>> = vec![None; lamps.len()];
@@ -51,12 +50,12 @@ pub fn enclosed_lamps(scene: &Scene) -> Vec<EnclosedLamp> {
     enclosed.filter_map(|(lamp, shell)| Some(EnclosedLamp { lamp: lamp.name, shell: shell?.1 })).collect()
 }
 
-/// Something that emits.
+/// A light source.
 struct Lamp {
     name: String,
-    /// Where its light starts, scene coordinates.
+    /// The points its light starts from, scene coordinates.
     points: Vec<DVec3>,
-    /// The instance that it is and those of its surfaces that emit, unless it is no surface.
+    /// The instance and its emitting surfaces; none for punctual lights.
     surfaces: Option<(usize, Vec<u32>)>,
 }
 
@@ -71,7 +70,7 @@ fn lamps(scene: &Scene) -> Vec<Lamp> {
     punctual.chain(surfaces).collect()
 }
 
-/// The surfaces of an instance that emit, as a lamp.
+/// The emitting surfaces of an instance, as a lamp.
 fn surface_lamp(scene: &Scene, number: usize, instance: &Instance) -> Option<Lamp> {
     let part = &scene.parts[instance.part.index()];
     let materials = instance.materials(&part.materials);
@@ -92,9 +91,9 @@ fn surface_lamp(scene: &Scene, number: usize, instance: &Instance) -> Option<Lam
     })
 }
 
-/// A closed shell in its place.
+/// A closed shell of an instance.
 struct Enclosure {
-    /// Its polygons, looking outwards, scene coordinates.
+    /// Its polygons, facing outwards, scene coordinates.
     polygons: Vec<Surface>,
     bounds: Aabb,
     /// The instance, and the numbers of the surfaces.
@@ -104,7 +103,7 @@ struct Enclosure {
     is_lit_inside: bool,
 }
 
-/// The shells of an instance that no one-sided surface looks into.
+/// The shells of an instance without one-sided surfaces that face inwards.
 fn enclosures(part: &Part, instance: &Instance, number: usize) -> Vec<Enclosure> {
     let polygons: Vec<&[DVec3]> = part.surfaces.iter().map(|s| s.corners.as_slice()).collect();
     let is_double_sided =
@@ -128,7 +127,7 @@ fn enclosures(part: &Part, instance: &Instance, number: usize) -> Vec<Enclosure>
 }
 
 impl Enclosure {
-    /// Whether all of `lamp` stands inside, and nothing else does that it could be there for.
+    /// Whether all of `lamp` is inside, and the shell is not a room.
     fn hides(&self, lamp: &Lamp, scene: &Scene) -> bool {
         let shines_itself = lamp.surfaces.as_ref().is_some_and(|(instance, surfaces)| {
             *instance == self.instance && surfaces.iter().any(|at| self.surfaces.binary_search(at).is_ok())

@@ -1,10 +1,9 @@
-//! Two-sided closed shells in which nothing shines: their inner sides are dark and never seen, so they have no
-//! elements.
+//! Finds two-sided closed shells without light inside: their inner sides are dark and never seen, so they get no elements.
 //!
-//! Modelling programs make every material two-sided unless told otherwise. Half of the elements of a crate then lie inside
-//! it. A shell keeps its inner sides where light may be inside: it shines itself, or a lamp, a surface that shines, or a
-//! camera is not clearly outside of it in one of its places. What only reflects does not matter: inside a closed opaque
-//! shell it is as dark as the shell.
+//! Modelling programs make materials two-sided by default. Half of the elements of a crate then lie inside it. A shell
+//! keeps its inner sides if light or a camera may be inside: it emits itself, or a lamp, an emitting surface or a
+//! camera is not clearly outside of it in one of its instances. Reflecting surfaces do not matter: inside a closed
+//! opaque shell they are as dark as the shell.
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::box_tree::BoxTree;
@@ -13,14 +12,15 @@ use crate::geometry::tolerance::IN_FRONT;
 use equilux_formats::{Instance, LightKind, Part, Scene, Surface};
 use glam::DVec3;
 
-/// How far corners of a surface that shines are drawn in, so that one in the corner of a room is looked for in the room.
+/// How far corners of emitting surfaces are moved towards the middle, so that a corner in the corner of a room is
+/// inside the room.
 const DRAWN_IN: f64 = 0.01;
 
 /// Winding numbers below this are clearly outside; on an edge of a box it is ¼, at its corner ⅛.
 const OUTSIDE: f64 = 0.01;
 
-/// Hides the backs of all surfaces that look into a shell in which nothing shines; surfaces that are wound inwards are
-/// turned round first. Returns how many shells that are.
+/// Hides the backs of all surfaces of shells without light inside; inward-facing surfaces are flipped first. Returns
+/// the number of shells.
 pub(super) fn hide_backs(scene: &mut Scene) -> usize {
     let shells: Vec<Vec<Shell>> = scene.parts.iter().map(two_sided_shells).collect();
     if shells.iter().all(Vec::is_empty) {
@@ -51,7 +51,7 @@ pub(super) fn hide_backs(scene: &mut Scene) -> usize {
     hidden
 }
 
-/// The shells of a part that have two-sided members, and no one-sided ones that look into them.
+/// The shells of a part with two-sided surfaces, and without one-sided ones that face inwards.
 fn two_sided_shells(part: &Part) -> Vec<Shell> {
     if !part.materials.iter().any(|material| material.double_sided) {
         return vec![];
@@ -67,7 +67,7 @@ fn two_sided_shells(part: &Part) -> Vec<Shell> {
     shells
 }
 
-/// Whether a shell's inner sides shine, in any of its places.
+/// Whether a shell's inner sides emit, in any of its instances.
 fn shines(shell: &Shell, part: &Part, places: &[(usize, &Instance)]) -> bool {
     let materials = shell.polygons.iter().map(|&surface| part.surfaces[surface as usize].material);
     let mut two_sided = materials.filter(|material| part.materials[material.index()].double_sided);
@@ -78,17 +78,17 @@ fn shines(shell: &Shell, part: &Part, places: &[(usize, &Instance)]) -> bool {
     })
 }
 
-/// Where light comes from and goes to that is not reflected: lamps, cameras, and surfaces that shine.
+/// Lamps, emitting surfaces and cameras.
 struct Sources {
     all: Vec<Source>,
     tree: BoxTree,
 }
 
-/// A place that matters.
+/// A point of a lamp, emitting surface or camera.
 struct Source {
     /// Scene coordinates.
     point: DVec3,
-    /// Where a surface looks that shines here; zero for lamps and cameras.
+    /// The normal of an emitting surface; zero for lamps and cameras.
     normal: DVec3,
     /// The instance and the surface of its part, unless it is a lamp or a camera.
     surface: Option<(usize, u32)>,
@@ -108,7 +108,7 @@ impl Sources {
         Self { tree: BoxTree::new(&boxes), all }
     }
 
-    /// Whether any source is not clearly outside a shell of a part in this place.
+    /// Whether any source is not clearly outside a shell of a part with this placement.
     fn any_in(&self, shell: &Shell, part: &Part, (number, instance): (usize, &Instance)) -> bool {
         let outwards: Vec<Surface> = shell
             .polygons
@@ -134,8 +134,8 @@ impl Sources {
     }
 }
 
-/// Points of the surfaces of an instance that shine, a little off their corners and at their middles, and for two-sided ones
-/// once for each side.
+/// Points of the emitting surfaces of an instance, near their corners and at their middles, for two-sided ones once for
+/// each side.
 fn shining<'a>(part: &'a Part, number: usize, instance: &'a Instance) -> impl Iterator<Item = Source> + 'a {
     let shines = move |surface: &Surface| {
         let repainted = instance.repainted.iter().find(|new| new.material == surface.material);

@@ -1,4 +1,4 @@
-//! A scene as its file has it → the surfaces of it that light can fall on.
+//! Reduces an imported scene to the surfaces that light can reach.
 
 mod bounds;
 mod cells;
@@ -9,7 +9,7 @@ mod recentre;
 
 use equilux_formats::{PartId, Scene};
 
-/// Moves a scene close to the origin of its coordinates, and takes out of it what takes no part in its light.
+/// Moves a scene close to the origin of its coordinates, and removes surfaces that do not take part in its light.
 pub(crate) fn tidy(scene: &mut Scene) {
     recentre::recentre(scene);
     scene.hidden_shells = hidden_backs::hide_backs(scene);
@@ -18,7 +18,7 @@ pub(crate) fn tidy(scene: &mut Scene) {
     drop_unused_parts(scene);
 }
 
-/// Parts that stand nowhere any more go, and the others are numbered anew.
+/// Removes parts without instances, and renumbers the others.
 fn drop_unused_parts(scene: &mut Scene) {
     let mut new: Vec<Option<PartId>> = vec![None; scene.parts.len()];
     scene.instances.iter().for_each(|instance| new[instance.part.index()] = Some(instance.part));

@@ -1,8 +1,8 @@
-//! Surfaces that lie on each other in one plane and look the same way count once: the first of the scene keeps its place, of
-//! later ones what it covers is cut away. Both would otherwise be seen in every row that sees either.
+//! Removes overlaps of coplanar surfaces that face the same way: the first surface of the scene stays, and what it
+//! covers of later ones is cut away. Otherwise every row that sees one would count both.
 //!
-//! What is cut within a part is cut for all of its instances. What another instance covers makes another part of an
-//! instance, the same one for all that are covered alike.
+//! Overlaps within a part are cut for all of its instances. An instance that another instance covers gets a new part,
+//! shared by all instances that are covered in the same way.
 
 use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
@@ -15,10 +15,10 @@ use equilux_formats::{Instance, Part, PartId, Scene, Surface};
 use glam::{DAffine3, DVec3};
 use std::collections::BTreeMap;
 
-/// More parts and pairs of parts than this are counted instead of named.
+/// The number of parts and pairs of parts that a note names; the rest are counted.
 const NAMED: usize = 3;
 
-/// Cuts away what is covered, and says so.
+/// Cuts away covered surfaces, and adds a note.
 pub(super) fn cut_overlaps(scene: &mut Scene) {
     let mut covered = Vec::new();
     for part in &mut scene.parts {
@@ -37,13 +37,13 @@ pub(super) fn cut_overlaps(scene: &mut Scene) {
     };
     covered.truncate(NAMED);
     scene.notes.push(format!(
-        "faces lie on others in one plane and look the same way: {}{more}; each place counts once, for the first face there, and \
-         what that covers of the others was cut away",
+        "faces lie on others in one plane and look the same way: {}{more}; the first face of each place was kept, and what it covers of \
+         the others was cut away",
         covered.join(", ")
     ));
 }
 
-/// Sides of surfaces that can be searched by place.
+/// Sides of surfaces with a spatial index.
 struct Sides {
     /// The surface of each side, and the side.
     all: Vec<(usize, Facing)>,
@@ -63,7 +63,7 @@ impl Sides {
         Self { tree: BoxTree::new(&boxes), all }
     }
 
-    /// Those that lie on `side`, of surfaces that `counts` takes, by rising number.
+    /// The numbers of those that overlap `side`, in rising order, of surfaces for which `counts` returns true.
     fn on(&self, side: &Facing, tolerance: f64, counts: impl Fn(usize) -> bool) -> Vec<usize> {
         let near = self.tree.meeting(side.bounds().grown(tolerance)).into_iter().map(|i| i as usize);
         let mut on: Vec<usize> =
@@ -73,7 +73,7 @@ impl Sides {
     }
 }
 
-/// Cuts away what earlier surfaces of the part cover, and returns of how many surfaces.
+/// Cuts away what earlier surfaces of the part cover, and returns the number of surfaces that are worth a note.
 fn cut_within(part: &mut Part) -> usize {
     let corners = || part.surfaces.iter().flat_map(|surface| surface.corners.as_slice());
     let tolerance = planes::tolerance(corners());
@@ -89,8 +89,8 @@ fn cut_within(part: &mut Part) -> usize {
     count
 }
 
-/// How many of the surfaces with `covers` are worth a word. A solid that stands against a two-sided sheet, such as a crate on a
-/// floor, has a face in the plane of the sheet's other side; it is never seen.
+/// The number of covered surfaces that are worth a note. A solid against a two-sided sheet, such as a crate on a floor,
+/// has a face in the plane of the sheet's other side; that face is never seen.
 fn noticed(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>) -> usize {
     if covers.is_empty() {
         return 0;
@@ -108,7 +108,7 @@ fn noticed(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>) -> usize {
     covers.iter().filter(|(surface, on)| is_noticed(**surface, on)).count()
 }
 
-/// The surfaces of a part where some of them are covered.
+/// The visible surfaces of a part under `covers`.
 fn cut(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>, tolerance: f64) -> Vec<Surface> {
     let pieces = |(number, surface): (usize, &Surface)| match covers.get(&number) {
         Some(covers) => seen_pieces(part, surface, covers, tolerance),
@@ -117,7 +117,7 @@ fn cut(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>, tolerance: f64) -> Ve
     part.surfaces.iter().enumerate().flat_map(pieces).collect()
 }
 
-/// Cuts away what earlier instances cover, and says who covers whom.
+/// Cuts away what earlier instances cover, and returns phrases for the note.
 fn cut_across(scene: &mut Scene) -> Vec<String> {
     let bounds: Vec<Aabb> = scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
     let tolerances: Vec<f64> = bounds.iter().map(|b| planes::tolerance([&b.low, &b.high])).collect();
@@ -157,7 +157,7 @@ fn meet(a: &Aabb, b: &Aabb, tolerance: f64) -> bool {
     (a.low - tolerance).cmple(b.high).all() && (b.low - tolerance).cmple(a.high).all()
 }
 
-/// By surface of instance `own` the sides of instance `other` that lie on it, in the coordinates of `own`.
+/// For each surface of instance `own`, the sides of instance `other` that lie on it, in the coordinates of `own`.
 fn covered_by(scene: &Scene, own: usize, other: usize, tolerance: f64) -> BTreeMap<usize, Vec<Facing>> {
     let [(own, part), (other, other_part)] =
         [own, other].map(|k| (&scene.instances[k], &scene.parts[scene.instances[k].part.index()]));
@@ -185,10 +185,10 @@ fn scale(instance: &Instance) -> f64 {
     instance.placement.matrix3.determinant().abs().cbrt()
 }
 
-/// Parts that were made of others by cutting.
+/// Parts that were derived from others by cutting.
 #[derive(Default)]
 struct Variants {
-    /// By the part that was cut.
+    /// By the original part.
     of: BTreeMap<u32, Vec<PartId>>,
 }
 

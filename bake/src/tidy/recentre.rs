@@ -1,16 +1,16 @@
-//! Coordinates that start near the scene: what is far from the file's origin keeps its digits.
+//! Moves coordinates near the origin, so that scenes far from the file's origin keep their digits.
 //!
-//! Tolerances are shares of the largest coordinate, because that is what rounding is a share of. A scene a thousand
+//! Tolerances are relative to the largest coordinate, because rounding is. A scene a thousand
 //! kilometres from its file's origin would have tolerances of metres.
 
 use super::bounds::placed_bounds;
 use crate::geometry::aabb::Aabb;
 use equilux_formats::Scene;
 
-/// A scene is moved once it is further away than about this many times its extent. A power of two.
+/// A scene is moved if it is further away than about this multiple of its extent. A power of two.
 const FAR: f64 = 16.0;
 
-/// Moves a scene that is far away from its file's origin close to its own, which it keeps in `origin`.
+/// Moves a scene far from its file's origin close to its own, which is stored in `origin`.
 pub(super) fn recentre(scene: &mut Scene) {
     let boxes = scene.instances.iter().map(|instance| placed_bounds(&scene.parts, instance));
     let around = boxes.fold(Aabb::EMPTY, Aabb::union);

@@ -3,9 +3,9 @@
 use super::Number;
 use std::io::{self, Read, Write};
 
-/// 16 MiB, eight times the window of the level we write with.
+/// 16 MiB, eight times the window of the compression level.
 const WINDOW_LOG_MAX: u32 = 24;
-/// Decoded at a time: memory grows with what is really there, not with what the index claims.
+/// Size of decoded chunks: memory grows with the actual data, not with the length in the index.
 const CHUNK: usize = 1 << 16;
 
 /// The bytes as a frame.
@@ -30,6 +30,6 @@ pub(super) fn decompress<T: Number>(frame: &[u8], count: u64) -> io::Result<Vec<
     }
     match decoder.read(&mut [0])? {
         0 => Ok(values),
-        _ => Err(io::Error::other("more numbers than the index says")),
+        _ => Err(io::Error::other("more numbers than in the index")),
     }
 }

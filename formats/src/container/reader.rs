@@ -1,4 +1,4 @@
-//! Reading a file, and saying what is wrong with it.
+//! Reads and validates files.
 
 use super::{
     ArrayEntry, FORMAT_VERSION, HEADER_LENGTH, Index, Kind, MAGIC, MESSAGES_LIMIT, Number, checksum, frame,
@@ -10,18 +10,18 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// A file whose header and messages have been found good. Arrays are read and checked one at a time.
+/// A file with valid header and messages. Arrays are read and verified one at a time.
 #[derive(Debug)]
 pub struct Reader {
     source: Source,
     index: Index,
     meta: Vec<u8>,
-    /// Where the first frame begins.
+    /// Offset of the first frame.
     frames_start: u64,
 }
 
 impl Reader {
-    /// Opens the file at `path`, which must hold a `kind`.
+    /// Opens the file at `path`, which must be of this kind.
     pub fn open(path: &Path, kind: Kind) -> Result<Self> {
         let mut source = Source::open(path, kind)?;
         let messages = source.messages()?;
@@ -37,7 +37,7 @@ impl Reader {
         Ok(Self { meta: rest.to_vec(), source, index, frames_start })
     }
 
-    /// What the content was made from.
+    /// The manifest: the inputs of the content.
     pub fn manifest(&self) -> &Manifest {
         &self.index.manifest
     }
@@ -75,13 +75,13 @@ impl Reader {
             .map_err(|error| self.damaged(format!("array {name:?} that cannot be unpacked ({error})")))
     }
 
-    /// The error for content that cannot be what was written: `found` is what is wrong with it.
+    /// The error for invalid content; `found` describes it.
     pub fn damaged(&self, found: impl Into<String>) -> Error {
         self.source.damaged(found)
     }
 }
 
-/// A file and what it ought to be.
+/// A file with its expected kind.
 #[derive(Debug)]
 struct Source {
     path: PathBuf,
@@ -103,7 +103,7 @@ impl Source {
         Ok(Self { path: path.into(), kind, file, length })
     }
 
-    /// The messages behind the header, once both are found good.
+    /// The messages after the header, if both are valid.
     fn messages(&mut self) -> Result<Vec<u8>> {
         if self.length < HEADER_LENGTH as u64 {
             return Err(self.damaged(format!("only {} bytes", self.length)));
@@ -122,7 +122,7 @@ impl Source {
         Ok(messages)
     }
 
-    /// Foreign files and other versions are told apart first: nothing past these bytes need look like ours.
+    /// Detects foreign files and other versions first, whose further bytes may have any form.
     fn check_origin(&self, header: &[u8]) -> Result<()> {
         if header[..8] != MAGIC {
             let expected = format!("an Equilux {} file", self.kind.noun());
@@ -147,7 +147,7 @@ impl Source {
         ))
     }
 
-    /// Bytes that lie within the file; so no more is asked for than is there.
+    /// Reads bytes that lie within the file, so that no more memory is allocated than the file's size.
     fn bytes(&mut self, start: u64, length: u64) -> Result<Vec<u8>> {
         let mut bytes = vec![0; length as usize];
         let read = self.file.seek(SeekFrom::Start(start)).and_then(|_| self.file.read_exact(&mut bytes));
@@ -159,13 +159,13 @@ impl Source {
         self.error(found, format!("an undamaged {} file", self.kind.noun()))
     }
 
-    /// Whatever is wrong with a cached file, making it again replaces it.
+    /// Baking again replaces any invalid cached file.
     fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> Error {
         Error::new(&self.path, found, expected, "bake it again")
     }
 }
 
-/// The file and its length. Opening a pipe would wait for ever, so only regular files are opened.
+/// Opens a file and returns its length. Only regular files are opened, because opening a pipe could block.
 fn open_regular(path: &Path) -> io::Result<(File, u64)> {
     if !path.metadata()?.is_file() {
         return Err(io::Error::other("not a regular file"));

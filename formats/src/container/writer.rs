@@ -1,4 +1,4 @@
-//! Putting a file together in memory and on disk.
+//! Composes a file in memory and writes it.
 
 use super::{ArrayEntry, Index, Kind, Number, checksum, frame, header};
 use crate::error::{Error, Result};
@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::io;
 use std::path::Path;
 
-/// A file that is being put together in memory.
+/// A file under construction in memory.
 #[derive(Debug)]
 pub struct Writer {
     kind: Kind,
@@ -18,7 +18,7 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// A file of `kind`, made from what `manifest` lists, with whatever else its reader must know in `meta`.
+    /// A file of `kind` with the inputs in `manifest` and further metadata in `meta`.
     pub fn new(kind: Kind, manifest: &Manifest, meta: &impl Serialize) -> Self {
         let meta = rmp_serde::to_vec_named(meta).expect("metadata are plain data");
         Self { kind, index: Index { manifest: manifest.clone(), arrays: vec![] }, meta, frames: vec![] }
@@ -39,8 +39,8 @@ impl Writer {
         self.frames.extend(frame);
     }
 
-    /// Puts the file at `path` in one step: readers see the old file or the whole new one, and a failure leaves
-    /// nothing behind. Nothing waits for the disk: after a power cut the checksums tell what was lost.
+    /// Writes the file to `path` atomically: readers see the old file or the whole new one, and a failure leaves
+    /// nothing behind. The file is not flushed to disk: after a power failure the checksums detect lost data.
     pub fn write_to(&self, path: &Path) -> Result<()> {
         self.try_write_to(path).map_err(|error| {
             Error::new(

@@ -1,14 +1,13 @@
-//! Rows of form factors times the light of their columns, one sum a row: what every round of an exchange consists of. Rows
-//! lie one after the other.
+//! Products of form-factor rows and the radiosities of their senders, the inner loop of every round. Rows are contiguous.
 
 use crate::rgb::Rgb;
 
-/// Rows whose sums are added up side by side: as many chains of additions as hide their latency.
+/// Rows summed in parallel: enough independent chains of additions to hide their latency.
 const ABREAST: usize = 4;
 
-/// Each row times what is `seen`, added up from the first column to the last. `rows` follow one another in `values`.
+/// The product of each row with `seen`, summed from the first column to the last. `rows` are contiguous in `values`.
 pub fn products<T>(values: &[T], seen: &[Rgb], rows: usize, number: impl Fn(&T) -> f64) -> Vec<Rgb> {
-    // The widest instructions that the machine has; products and sums stay what they are, so the bits do too.
+    // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
     pulp::Arch::new().dispatch(Products { values, seen, rows, number })
 }
 

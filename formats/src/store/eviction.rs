@@ -1,7 +1,7 @@
-//! Making room in the cache: whatever is not needed goes, or what was not used for longest.
+//! Cache eviction: removes files that are not needed, or the least recently used ones.
 //!
-//! Only files that a store made are touched, known by their names. A process that reads a file while it goes is not
-//! disturbed; one that comes later makes it again.
+//! Only files with names of a store are removed. A process that is reading a file is not affected; later ones compute
+//! its content again.
 
 use super::Store;
 use crate::container::{Kind, Reader};
@@ -13,37 +13,36 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-/// What went and what stayed.
+/// The result of an eviction.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Evicted {
-    /// Removed.
+    /// Removed files.
     pub dropped: Tally,
-    /// Still there.
+    /// Remaining files.
     pub kept: Tally,
 }
 
-/// How many files, and how large.
+/// Number and size of files.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
     /// Number of files.
     pub files: usize,
-    /// Their sizes added up.
+    /// Total size, bytes.
     pub bytes: u64,
 }
 
-/// A file that a store made.
+/// A file of a store.
 struct Cached {
     path: PathBuf,
     kind: Kind,
-    /// The key or the name in its file name.
+    /// The digest in its file name.
     digest: Digest,
     bytes: u64,
     used: SystemTime,
 }
 
 impl Store {
-    /// Drops every file that is not under one of these keys. Of what was last made from what, only that is kept which
-    /// led to one of the keys.
+    /// Removes every file that does not belong to one of these keys. Latest manifests stay if they have one of these keys.
     pub fn keep_only(&self, keys: &HashSet<Key>) -> Result<Evicted> {
         let keys: HashSet<Digest> = keys.iter().map(|&key| key.into()).collect();
         self.evict(|files| {
@@ -52,11 +51,11 @@ impl Store {
         })
     }
 
-    /// Drops what was not used for longest until all files together have at most this many bytes. What was read or
-    /// written through this store since it was opened stays, even if it is larger.
+    /// Removes the least recently used files until all files together have at most this many bytes. Files that were
+    /// read or written through this store since it was opened stay, even if they are larger.
     pub fn limit(&self, bytes: u64) -> Result<Evicted> {
         self.evict(|mut files| {
-            // By path where times are equal, so that the same files go wherever folders are listed in another order.
+            // By path if times are equal, so that the result does not depend on the order of directory entries.
             files.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
             let mut left: u64 = files.iter().map(|file| file.bytes).sum();
             let log = self.log();
@@ -68,7 +67,7 @@ impl Store {
         })
     }
 
-    /// Removes the second half of what `divide` makes of all files.
+    /// Divides all files with `divide` into kept and dropped ones, and removes the latter.
     fn evict(&self, divide: impl FnOnce(Vec<Cached>) -> (Vec<Cached>, Vec<Cached>)) -> Result<Evicted> {
         let (kept, dropped) = divide(self.files()?);
         dropped.iter().try_for_each(|file| remove(&file.path))?;
@@ -80,7 +79,7 @@ impl Store {
             let found = format!("cannot be listed ({error})");
             Error::new(&self.folder, found, "a folder that can be read", "check its permissions")
         })?;
-        // What cannot be looked at was just removed by another process.
+        // Files without metadata were just removed by another process.
         Ok(entries.flatten().filter_map(|entry| Cached::at(entry.path())).collect())
     }
 }
@@ -95,7 +94,7 @@ impl Cached {
         Some(Self { kind, digest, bytes: metadata.len(), used, path })
     }
 
-    /// The key of what it is about.
+    /// The key that it belongs to.
     fn key(&self) -> Option<Digest> {
         match self.kind {
             Kind::Manifest => Some(Reader::open(&self.path, self.kind).ok()?.manifest().key().into()),

@@ -1,5 +1,5 @@
-//! The part file: elements and faces by their corners, and the self block. Normals, centroids and areas are worked
-//! out again from the same corners by the same code, so they come back to the last bit.
+//! The part file: elements and faces by their corners, and the self block. Normals, centroids and areas are computed
+//! again from the corners by the same code, so they are bit-identical.
 
 use super::rows::{Meta, read_rows, write_rows};
 use super::{Stored, array_of, check, finite_rows};

@@ -7,7 +7,7 @@ use crate::fingerprint::Manifest;
 use crate::rows::{Precision, Rows};
 use serde::{Deserialize, Serialize};
 
-/// What is said of a block beside its arrays.
+/// The metadata of a block.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Meta {
     senders: u32,
@@ -35,8 +35,8 @@ impl Stored for Rows {
     }
 }
 
-/// The arrays of `rows`; its [`Meta`] is for the caller to keep. Columns lie close together within a group, so their
-/// differences compress better than they do.
+/// Writes the arrays of `rows` and returns its [`Meta`]. Columns of a group are close together, so their differences
+/// compress better.
 pub(super) fn write_rows(rows: &Rows, writer: &mut Writer) {
     let arrays = rows.arrays();
     let mut last = 0;
