@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 const ARGUMENTS: [&str; 10] =
     ["scene.glb", "--element-size", "1", "--rounds", "1", "--cache", "cache", "--exact-rows", "0", "--json"];
 
-/// What happens to a file's bytes.
+/// The damage of a file.
 type Damage = fn(&mut Vec<u8>);
 
 fn report(workshop: &Workshop) -> Value {
@@ -68,7 +68,7 @@ fn exchanged_cache_files_are_noted_and_made_again() {
     assert_healed(&workshop, &before, &files, "exchanged");
 }
 
-/// The next run is as the one before the damage, says what it found, and leaves the cache as it was.
+/// The next run has the results of the one before the damage, reports the damage, and repairs the cache.
 fn assert_healed(workshop: &Workshop, before: &Value, files: &BTreeMap<PathBuf, Vec<u8>>, damage: &str) {
     let after = report(workshop);
     assert_eq!(after["energy"], before["energy"], "{damage}: light");
@@ -80,10 +80,10 @@ fn assert_healed(workshop: &Workshop, before: &Value, files: &BTreeMap<PathBuf, 
     assert!(!healed["notes"].to_string().contains(".eqx"), "{damage}: run after notes {}", healed["notes"]);
 }
 
-/// So many places in each file.
+/// Number of positions in each file.
 const PLACES: usize = 100;
 
-/// Files of every kind as the programs make them, changed in one byte or cut: never believed, wherever it is.
+/// Files of every kind as the programs make them, changed in one byte or cut: the damage is always detected.
 #[test]
 fn no_damage_to_any_file_of_a_real_cache_is_believed() {
     let workshop = Workshop::with(&furnished());

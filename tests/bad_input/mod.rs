@@ -1,4 +1,4 @@
-//! Bad input and bad surroundings: a sentence that names the file and what to do, exit code 1, nothing half-written.
+//! Faulty input and environments: an error with file and remedy, exit code 1, no incomplete files.
 
 mod cache;
 mod surroundings;

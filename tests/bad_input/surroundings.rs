@@ -1,4 +1,4 @@
-//! Folders that cannot be written: said before anything is computed.
+//! Folders that cannot be written are reported before anything is computed.
 
 use equilux_tests::rooms::square;
 use equilux_tests::workshop::Workshop;

@@ -1,4 +1,4 @@
-//! Scenes that cannot be: refused by name, with a remedy, and nothing is written.
+//! Impossible scenes are refused with an error that names file and remedy, and nothing is written.
 
 use equilux_formats::{Material, Rgb};
 use equilux_tests::model::{Model, Node};
@@ -57,6 +57,16 @@ fn cases() -> Vec<Case> {
             Model::of(&[furnace()]).bytes(),
             ["without end", "lower a base colour"],
         ),
+    ]
+    .into_iter()
+    .chain(files_and_sizes())
+    .collect()
+}
+
+/// Part files that do not exist or may not be read, and scenes with too many elements.
+fn files_and_sizes() -> Vec<Case> {
+    let square = || Model::of(&square());
+    vec![
         case(
             "a part outside the folder",
             Model::of(&[Node::of_file("lamp", "../lamp.glb")]).bytes(),
@@ -104,12 +114,12 @@ fn scenes_that_cannot_be_are_refused_and_nothing_is_written() {
     }
 }
 
-/// A furnace is known only by its form factors, which may stay in the cache.
+/// A furnace is detected by its form factors, which may stay in the cache.
 fn is_input_or_cached(path: &std::path::Path) -> bool {
     path.ends_with("scene.glb") || path.components().any(|folder| folder.as_os_str() == ".equilux")
 }
 
-/// A closed room that shines and reflects everything.
+/// A closed room that emits and reflects everything.
 fn furnace() -> Node {
     let white = Material { reflectance: Rgb([1.0; 3]), ..lamp([1.0; 3]) };
     Node::new("furnace", room(white, DVec3::ZERO, DVec3::ONE))

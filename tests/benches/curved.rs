@@ -1,6 +1,6 @@
-//! Eight closed curved meshes in a room: what a row costs when every face is clipped, and when only silhouettes are.
+//! Cost of a row in a room with eight closed curved meshes: clipping by every face, and by silhouettes only.
 //!
-//! `cargo bench -p equilux-tests --bench curved -- [sphere|torus]… [80|1280|5120]…`; all, unless some are named.
+//! `cargo bench -p equilux-tests --bench curved -- [sphere|torus]… [80|1280|5120]…`; by default all.
 
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::form_factor::{contour, plain};
@@ -119,7 +119,7 @@ impl Scene {
         sum
     }
 
-    /// Every face that looks at the receiver hides its own pyramid, found by the same index of directions.
+    /// Every face that faces the receiver hides its own pyramid, found with the same index of directions.
     fn row_by_faces(&self, receiver: &Element, senders: &[Element]) -> f64 {
         let x = receiver.centroid;
         let faces =
@@ -147,7 +147,7 @@ impl Scene {
             if hidden {
                 continue;
             }
-            // Those that hide most come first: often nothing is left for the others.
+            // Those that hide most come first: often nothing is left to clip.
             before.sort_by_cached_key(|pyramid| std::cmp::Reverse(pyramid.corners_inside(&polygon)));
             pieces.push(polygon);
             for pyramid in before {

@@ -1,4 +1,4 @@
-//! What an edit of a level costs against starting from nothing: move a crate, switch a lamp, repaint a wall.
+//! Run time after an edit of a level, compared with a run from scratch: move a crate, switch a lamp, repaint a wall.
 //! `cargo bench -p equilux-tests --bench edits -- [ROOMS] [ELEMENT SIZE] [TOLERANCE]`
 
 use equilux_assemble::outputs::requests::Pictures;
@@ -15,7 +15,7 @@ use equilux_formats::Rgb;
 use equilux_tests::levels::furnished;
 use equilux_tests::model::{Model, Node};
 use equilux_tests::shapes::{grey, solid};
-use equilux_tests::workshop::Workshop;
+use equilux_tests::workshop::{Workshop, changed};
 use glam::{DVec3, dvec3};
 use std::time::Instant;
 
@@ -36,55 +36,50 @@ fn main() {
         "", "elements", "computed", "of all", "rounds", "seconds", "faster"
     );
     let mut level = level(rooms);
-    let said = |what: &str, level: &[Node], job: &Job, first: Option<f64>| {
-        Model::of(level).write(&workshop.path("scene.glb"));
-        let start = Instant::now();
-        let report: Report = run(job, &Monitor::default()).unwrap_or_else(|error| panic!("{error}"));
-        let seconds = start.elapsed().as_secs_f64();
-        let stored: usize = report.parts.iter().map(|part| part.stored).sum::<usize>();
-        println!(
-            "{what:<34}{:>10}{:>12}{:>10}{:>8}{seconds:>9.2}{:>9}",
-            report.elements,
-            report.form_factors_computed,
-            format!(
-                "{:.2} %",
-                100.0 * report.form_factors_computed as f64 / report.form_factors_stored.max(stored) as f64
-            ),
-            report.rounds.len(),
-            first.map_or(String::new(), |first| format!("{:.1} ×", first / seconds)),
-        );
-        if std::env::var_os("EQUILUX_TEXT").is_some() {
-            println!("{}", report.details());
-        }
-        seconds
-    };
-    let first = said("from nothing", &level, &job, None);
-    said("again, nothing changed", &level, &job, Some(first));
+    let measured =
+        |what: &str, level: &[Node], first: Option<f64>| assemble_and_print(what, level, &job, first);
+    let first = measured("from scratch", &level, None);
+    measured("again, nothing changed", &level, Some(first));
     level[rooms + 3].at += dvec3(0.25, 0.0, 0.125);
-    said("a crate moved", &level, &job, Some(first));
+    measured("a crate moved", &level, Some(first));
     let lamp = |node: &mut Node, by: f64| {
         let part = node.part.as_mut().expect("a part");
         let shining = part.materials.iter_mut().filter(|material| material.emission != [0.0; 3]);
         shining.for_each(|material| material.emission = material.emission.map(|e| e * by));
     };
     lamp(&mut level[5], 0.0);
-    said("a lamp switched off", &level, &job, Some(first));
+    measured("a lamp switched off", &level, Some(first));
     level[2].part.as_mut().expect("a part").materials[0].reflectance = Rgb([0.8, 0.3, 0.2]);
-    said("a wall repainted", &level, &job, Some(first));
-    let elsewhere = Workshop::new();
-    said(
-        "the same from nothing",
-        &level,
-        &{
-            let mut job = job.clone();
-            job.settings.cache = elsewhere.path("cache");
-            job
-        },
-        None,
-    );
+    measured("a wall repainted", &level, Some(first));
+    let empty = Workshop::new();
+    let from_scratch = changed(job.clone(), |job| job.settings.cache = empty.path("cache"));
+    assemble_and_print("the same from scratch", &level, &from_scratch, None);
 }
 
-/// Furnished rooms, and a crate of its own in each.
+/// Assembles `level` as the scene of `job` and prints a line of the table. Returns the wall time, seconds; `first` is that of
+/// the run to compare with.
+fn assemble_and_print(what: &str, level: &[Node], job: &Job, first: Option<f64>) -> f64 {
+    Model::of(level).write(&job.scene);
+    let start = Instant::now();
+    let report: Report = run(job, &Monitor::default()).unwrap_or_else(|error| panic!("{error}"));
+    let seconds = start.elapsed().as_secs_f64();
+    let stored: usize = report.parts.iter().map(|part| part.stored).sum();
+    let all = report.form_factors_stored.max(stored);
+    println!(
+        "{what:<34}{:>10}{:>12}{:>10}{:>8}{seconds:>9.2}{:>9}",
+        report.elements,
+        report.form_factors_computed,
+        format!("{:.2} %", 100.0 * report.form_factors_computed as f64 / all as f64),
+        report.rounds.len(),
+        first.map_or(String::new(), |first| format!("{:.1} ×", first / seconds)),
+    );
+    if std::env::var_os("EQUILUX_TEXT").is_some() {
+        println!("{}", report.details());
+    }
+    seconds
+}
+
+/// Furnished rooms with a crate in each.
 fn level(rooms: usize) -> Vec<Node> {
     let rooms = furnished(rooms);
     let crates: Vec<Node> = (0..rooms.len())

@@ -1,9 +1,8 @@
-//! What an exchange of light costs, by method: milliseconds a round in the parts' own equilibria, in transfers, in the coarse
-//! and the Krylov space, and in bounds and accounts; milliseconds in all for setting up and for proving; and the whole, in time
-//! of the processor.
+//! Cost of the exchange, by method: milliseconds a round for local equilibria, transfers, the coarse and the Krylov
+//! space, and bounds; total milliseconds for setup and proof; and the total CPU time.
 //!
-//! `cargo bench -p equilux-tests --bench exchange_cost -- [rooms|cells|corridor] [SIZE…]`: element sizes in metres. Equilibria
-//! are summed over threads; with RAYON_NUM_THREADS=1 shares are of one thread's time.
+//! `cargo bench -p equilux-tests --bench exchange_cost -- [rooms|cells|corridor] [SIZE…]`: element sizes in metres.
+//! Equilibria are summed over threads; with RAYON_NUM_THREADS=1 all times are of one thread.
 
 use equilux_assemble::exchange::outcome::Outcome;
 use equilux_assemble::exchange::settings::Method;
@@ -17,13 +16,13 @@ use std::time::{Duration, Instant};
 /// The bound to prove, relative to the brightest radiosity.
 const ERROR: f64 = 1e-6;
 
-/// Rounds after which a method is given up.
+/// The largest number of rounds.
 const MOST: usize = 100;
 
-/// A short exchange is run so often, and the fastest is shown.
+/// Runs of a short exchange, of which the fastest is shown.
 const RUNS: usize = 5;
 
-/// A run longer than this is not repeated.
+/// Longer runs are not repeated.
 const LONG: Duration = Duration::from_millis(600);
 
 fn main() {
@@ -94,7 +93,7 @@ fn table(name: &str, reflectances: &[f64], mut scene: Assembled) {
     }
 }
 
-/// The fastest run's time of the processor and what came of it.
+/// The CPU time of the fastest run, and its result.
 fn fastest(scene: &Assembled, method: Method) -> (Duration, Outcome) {
     let run = || {
         let start = processor_time();
@@ -110,8 +109,7 @@ fn fastest(scene: &Assembled, method: Method) -> (Duration, Outcome) {
     best
 }
 
-/// Time that this process's threads have run for: on a machine shared with others they mostly wait. Wall time where the
-/// system does not tell.
+/// CPU time of this process, which does not depend on the load of the machine. Wall time if the system does not provide it.
 fn processor_time() -> Duration {
     static START: OnceLock<Instant> = OnceLock::new();
     let of = |task: DirEntry| -> Option<u64> {

@@ -1,4 +1,4 @@
-//! Whole furnished levels: what a row costs, takes and misses, and by how much the light errs. Below it the same with rays.
+//! Whole furnished levels: time, memory and defect of a row, and the error of the light. Then the same with rays.
 //!
 //! `cargo bench -p equilux-tests --bench levels -- ROOMS SIZE OPENING…`, such as `6 0.25 0 1e-3`: rooms, element size in
 //! metres, and openings of the treecode, 0 for the exact matrix. Errors are against the first.
@@ -32,7 +32,7 @@ fn main() {
     }
 }
 
-/// The light, and what some receivers gather of it.
+/// The light, and the irradiance of some receivers.
 struct Reference {
     radiosity: Vec<Rgb>,
     gathered: Vec<f64>,
@@ -63,7 +63,7 @@ fn measure(level: &Level, opening: f64, reference: &mut Option<Reference>) {
     );
 }
 
-/// Dense rows by rays: one value a pair in f32, and by how much what they gather errs.
+/// Dense rows by rays: one f32 value a pair, and the error of the irradiance.
 fn cast(level: &Level, reference: &Reference) {
     let count = level.world.elements.len();
     for rays in RAYS.0 {

@@ -1,7 +1,7 @@
-//! What a live page costs the run that it shows, and how often it shows something new. In pairs, the same furnished level with
-//! everything in the cache: once alone, once with a viewer that fetches every light as soon as it can.
-//! `cargo bench -p equilux-tests --bench live -- [ROOMS] [ELEMENT SIZE] [PAIRS] [TOLERANCE]`
-//! Lights are at most as many as rounds: a large tolerance makes these quick.
+//! Cost of a live page for its run, and the rate of its updates. In pairs, the same furnished level from the cache:
+//! once without, once with a viewer that fetches every light as soon as possible. `cargo bench -p equilux-tests --bench
+//! live -- [ROOMS] [ELEMENT SIZE] [PAIRS] [TOLERANCE]` There is at most one light a round; a large tolerance makes
+//! rounds fast.
 
 use equilux_assemble::equation::observer::Observer;
 use equilux_assemble::exchange::listener::{FinishedRound, Unobserved};
@@ -39,7 +39,7 @@ fn main() {
     let mut job = workshop.job(Division::Authored);
     job.settings.preparation.element_size = Some(ElementSize::Metres(size));
     job.settings.preparation.resolution = Resolution::for_tolerance(number(3, 0.3));
-    // Many rounds, so that there is something to see.
+    // Many rounds, for many updates.
     (job.settings.method, job.settings.goal.error) = (Method::Jacobi, 1e-12);
     (job.outputs.exact_rows, job.outputs.pictures) = (ExactRows::About(0), Pictures::None);
     let first = measured(&job, false);
@@ -52,7 +52,7 @@ fn main() {
     let mut slower = Vec::new();
     let mut fast = (0.0, 0.0);
     for pair in 0..pairs {
-        // Whoever comes second must not always be the same.
+        // The order of the pair alternates.
         let [alone, viewed] = if pair % 2 == 0 {
             [measured(&job, false), measured(&job, true)]
         } else {
@@ -87,7 +87,7 @@ fn main() {
     );
 }
 
-/// What a run took.
+/// Times and counts of a run.
 struct Measured {
     elements: usize,
     rounds: usize,
@@ -97,9 +97,9 @@ struct Measured {
     exchange: f64,
     /// CPU time of this process.
     cpu: f64,
-    /// Lights that the viewer has got.
+    /// Lights that the viewer received.
     lights: usize,
-    /// Of rounds that take nothing: lights a second, and microseconds to tell one.
+    /// For rounds without work: lights a second, and microseconds to publish one.
     fast: (f64, f64),
 }
 
@@ -133,7 +133,7 @@ fn measured(job: &Job, is_viewed: bool) -> Measured {
     }
 }
 
-/// Tells of rounds as fast as that can be, of a scene that has been placed.
+/// Publishes rounds of a placed scene as fast as possible.
 fn fast_rounds(observer: &dyn Observer, report: &Report, lights: &AtomicUsize) -> (f64, f64) {
     let instances: Vec<usize> = (0..report.instances).collect();
     let (radiosity, times) = (vec![Rgb::WHITE; report.elements], StepTimes::none(report.instances));

@@ -10,7 +10,7 @@ use std::time::Instant;
 /// The bound to prove, relative to the brightest radiosity.
 const ERROR: f64 = 1e-6;
 
-/// Rounds after which a method is given up.
+/// The largest number of rounds.
 const MOST: usize = 500;
 
 const REFLECTANCES: [f64; 5] = [0.5, 0.9, 0.99, 0.999, 0.99999];

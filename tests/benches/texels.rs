@@ -1,4 +1,4 @@
-//! What texels of the size of a path tracer's elements cost, and how far they are from its averages.
+//! Cost of texels of the size of a path tracer's elements, and their difference from its averages.
 //! `cargo bench -p equilux-tests --bench texels [-- SCENE ELEMENT_SIZE TOLERANCE]`
 
 use equilux_tests::averages::{Compared, compared};

@@ -1,4 +1,4 @@
-//! What build tools need: a stamp that is as new as the work, the files that were read, and one line at the end.
+//! Support for build tools: a stamp, a dependency file, and one line of output.
 
 use super::{done, told};
 use equilux_tests::model::{Model, Node};
@@ -9,7 +9,7 @@ fn text(workshop: &Workshop, name: &str) -> String {
     std::fs::read_to_string(workshop.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
 }
 
-/// A scene of part files, one with a name that needs care.
+/// A scene of part files, one with a name that needs escaping.
 fn level() -> Workshop {
     let workshop = Workshop::new();
     std::fs::create_dir(workshop.path("parts")).expect("a folder");

@@ -1,4 +1,4 @@
-//! A cache knows content, not places: copied with or without its scenes, it serves where it lies.
+//! A cache depends on content, not on paths: it can be copied, with or without its scenes.
 
 use super::told;
 use equilux_tests::rooms::furnished;
@@ -34,7 +34,7 @@ fn a_copied_cache_serves_a_copied_scene() {
     assert_eq!(second["energy"], first["energy"], "light from the copy");
     let added: Vec<_> =
         there.files("of/a/friend").into_keys().filter(|path| !made.contains_key(path)).collect();
-    // What is remembered of a scene goes by its path: it only serves to say what changed since.
+    // Latest manifests depend on the scene's path; they only explain changes.
     let memory = |path: &Path| path.file_name().is_some_and(|n| n.to_string_lossy().starts_with("manifest-"));
     assert!(added.iter().all(|path| memory(path)), "made anew: {added:?}");
 

@@ -25,7 +25,7 @@ fn cached(workshop: &Workshop) -> BTreeSet<OsString> {
         .collect()
 }
 
-/// What a run of the scene alone leaves in an empty cache.
+/// The files that a run of the scene alone writes into an empty cache.
 fn needed(nodes: &[Node], options: &[&str]) -> BTreeSet<OsString> {
     let workshop = Workshop::with(nodes);
     assembled(&workshop, "scene.glb", options);

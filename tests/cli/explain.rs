@@ -1,4 +1,4 @@
-//! `--explain` says why each part was or was not baked, and why each block was computed, reused or left out.
+//! `--explain` prints why each part was or was not baked, and why each block was computed, reused or left out.
 
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{furnished, half, paint};

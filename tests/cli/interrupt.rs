@@ -27,7 +27,7 @@ fn an_interrupted_exchange_ends_after_the_round_and_writes_everything() {
     // With everything in the cache the second run is in the exchange soon.
     let filled = workshop.run("assemble", &[&ARGUMENTS[..], &["--rounds", "1"]].concat());
     assert_eq!(filled.code, Some(0), "{}", filled.stderr);
-    // Nothing tells from outside when the exchange begins. Too early, no round is done: wait longer.
+    // The start of the exchange is not visible from outside. If no round is complete, the test waits longer.
     for patience in (0..6).map(|doubled| Duration::from_millis(400 << doubled)) {
         let report = interrupted_after(patience, &workshop);
         let rounds = report["rounds"].as_array().expect("a list").len();

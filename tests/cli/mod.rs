@@ -1,4 +1,4 @@
-//! What the programs promise on the command line: exit codes, what is printed where, and which files there are.
+//! The command-line interface: exit codes, output streams, and files.
 
 mod explain;
 #[cfg(unix)]

@@ -1,4 +1,4 @@
-//! The files a run leaves, and the table of elements.
+//! The files that a run writes, and the table of elements.
 
 use equilux_tests::rooms::{echoing, furnished};
 use equilux_tests::workshop::Workshop;

@@ -1,4 +1,4 @@
-//! `assemble plan` says what a run would do, and then the run does it.
+//! `assemble plan` predicts what the following run does.
 
 use equilux_assemble::report::summary::{BLACK_ROWS, SHARED, UNSEEN};
 use equilux_tests::model::{Model, Node};
@@ -14,7 +14,7 @@ fn object(workshop: &Workshop, arguments: &[&str]) -> Value {
     serde_json::from_str(&ended.stdout).unwrap_or_else(|_| panic!("not one object: {}", ended.stdout))
 }
 
-/// The plan, after a run that has done what it says.
+/// The plan, verified by a run.
 fn planned_and_done(workshop: &Workshop, size: &str) -> Value {
     let plan = object(workshop, &["plan", "scene.glb", "--element-size", size]);
     let report = object(workshop, &["scene.glb", "--element-size", size]);

@@ -1,4 +1,4 @@
-//! Pictures that are asked for.
+//! Pictures of `assemble render`.
 
 use equilux_tests::rooms::furnished;
 use equilux_tests::workshop::Workshop;
@@ -26,7 +26,7 @@ fn a_picture_has_the_size_asked_for_and_says_how_bright_it_is() {
     }
 }
 
-/// The table holds the very light that is drawn, so nothing is off and everything is white, with what shows no surface dark.
+/// The table has the same light as the picture, so the error is zero: all surfaces are white, and the background is dark.
 #[test]
 fn against_its_own_light_a_scene_errs_nowhere() {
     let (workshop, first) = rendered(&["--elements", "own.csv"]);

@@ -75,7 +75,7 @@ fn a_full_output_is_an_error_of_the_environment() {
     }
 }
 
-/// Nothing can be said then; the exit code remains.
+/// No message can be printed then; only the exit code remains.
 #[cfg(target_os = "linux")]
 #[test]
 fn messages_that_cannot_be_written_change_no_exit_code() {

@@ -1,4 +1,4 @@
-//! Help that shows how, and exit code 2 for what cannot be meant.
+//! Help with examples, and exit code 2 for faulty command lines.
 
 use equilux_tests::rooms::square;
 use equilux_tests::workshop::Workshop;
@@ -40,7 +40,7 @@ fn a_folder_without_a_scene_says_so() {
     }
 }
 
-/// What people write, and what they are told to write instead.
+/// Common mistakes, and the suggested corrections.
 #[test]
 fn a_slip_gets_a_suggestion() {
     let workshop = Workshop::with(&square());

@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Far more than a run takes, and the second within which a broken scene is tried again.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// Nothing happens for this long: several times what a change takes to be noticed.
+/// Waiting time for the absence of a run: several times the delay of noticing a change.
 const SILENCE: Duration = Duration::from_secs(2);
 
 /// The program while it watches; it is ended whatever happens.

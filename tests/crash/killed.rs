@@ -1,5 +1,4 @@
-//! Killed at any moment, a program leaves nothing wrong: the same command again ends with the same files, to the byte, as
-//! if nothing had happened, and with no others.
+//! After a program is killed at any moment, the same command again produces the same files, byte for byte, and no others.
 
 use super::{assert_same, contents, start};
 use equilux_tests::rooms::furnished;

@@ -1,4 +1,4 @@
-//! Programs that are killed, and programs that run at once on one cache: never a wrong byte, and nothing left lying about.
+//! Programs that are killed, and programs that share a cache: results are correct and no files are left over.
 
 mod killed;
 mod shared;

@@ -1,4 +1,4 @@
-//! Two processes on one cache: what one computes, the other waits for.
+//! Of two processes that share a cache, one waits for the results of the other.
 
 use super::{assert_same, contents, start};
 use equilux_bake::elements::ElementSize;

@@ -1,4 +1,4 @@
-//! JSON that is wrong in one place: the importer reads it or refuses it by name, whatever stands there.
+//! JSON with one wrong value: the importer reads the file or refuses it with an error that names it.
 
 use super::forms::{Plain, plain};
 use equilux_bake::gltf_import::import_scene;

@@ -10,7 +10,7 @@ use std::io::Cursor;
 pub struct Form {
     pub name: String,
     pub bytes: Vec<u8>,
-    /// What a note says of it; nothing where it means exactly the same.
+    /// The text of its note; none if it means exactly the same.
     pub note: Option<&'static str>,
 }
 
@@ -20,7 +20,7 @@ pub struct Plain {
     pub binary: Vec<u8>,
 }
 
-/// A square with a picture of one colour, a spot above it, a camera, and an animation, all without what may be left out.
+/// A square with a picture of one colour, a spot above it, a camera, and an animation, all without optional properties.
 pub fn plain() -> Plain {
     let (corners, order) =
         ([[0.0_f32, 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]], [0_u16, 1, 2, 0, 2, 3]);
@@ -109,7 +109,7 @@ fn container(chunks: &[Vec<u8>]) -> Vec<u8> {
     [b"glTF", &2_u32.to_le_bytes()[..], &(12 + chunks.len() as u32).to_le_bytes(), &chunks].concat()
 }
 
-/// Add `value` to the list at `pointer`.
+/// Adds `value` to the list at `pointer`.
 pub fn push(json: &mut Value, pointer: &str, value: Value) {
     let list = json.pointer_mut(pointer).and_then(Value::as_array_mut);
     list.unwrap_or_else(|| panic!("no list at {pointer}")).push(value);
@@ -232,7 +232,7 @@ fn quantised(name: &str, normalized: bool, one: i16) -> Form {
     form(&format!("{name}.gltf"), plain.text(&plain.base64()))
 }
 
-/// What may be left out.
+/// Optional properties.
 fn left_out() -> Vec<Form> {
     vec![
         edited("no-scenes", None, |json| drop(json.as_object_mut().expect("an object").remove("scenes"))),
@@ -282,7 +282,7 @@ fn left_out() -> Vec<Form> {
     ]
 }
 
-/// What still, diffuse light has no use for.
+/// Properties that do not affect static, diffuse light.
 fn unused() -> Vec<Form> {
     let animation = |target: Value| {
         move |json: &mut Value| {

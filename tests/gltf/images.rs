@@ -1,4 +1,4 @@
-//! Which image colours a texture, and images that hold nothing.
+//! The image of a texture, and empty images.
 
 use super::forms::{Plain, picture, plain, push};
 use equilux_bake::gltf_import::import_scene;

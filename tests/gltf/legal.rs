@@ -7,7 +7,7 @@ use equilux_tests::script::script;
 use equilux_tests::workshop::Workshop;
 use serde_json::{Value, json};
 
-/// The scene in the file, without what differs from file to file.
+/// The scene in the file, without properties that differ between files.
 fn imported(workshop: &Workshop, form: &Form) -> Scene {
     let path = workshop.path(&form.name);
     std::fs::write(&path, &form.bytes).expect("a written file");

@@ -1,4 +1,4 @@
-//! glTF files as the specification allows them: one scene in every legal form is one scene.
+//! Legal glTF files: every form of one scene is the same scene.
 
 mod damaged;
 mod forms;

@@ -1,4 +1,4 @@
-//! References to other files: errors name the glTF file, what in it refers, and the reference.
+//! References to other files: errors name the glTF file, the referring object, and the reference.
 
 use super::forms::plain;
 use equilux_bake::gltf_import::import_scene;

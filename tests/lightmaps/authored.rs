@@ -1,4 +1,4 @@
-//! Lightmap layouts that authors made (TEXCOORD_1) are kept where light can be kept in them.
+//! Authored lightmap layouts (TEXCOORD_1) are kept if they are suitable.
 
 use super::{lookup, point_of, scene};
 use equilux_assemble::lightmap::atlas::Atlas;

@@ -1,4 +1,4 @@
-//! The files that `--lightmaps` leaves behind.
+//! The files that `--lightmaps` writes.
 
 use equilux_assemble::lightmap::{LightmapOptions, Units};
 use equilux_assemble::outputs::requests::Pictures;
@@ -117,7 +117,7 @@ fn the_list_names_images_by_their_contents_and_a_place_for_each_node() {
     }
 }
 
-/// Half floats end at 65504 and lose digits below 6e-5: brighter and darker light is scaled, and the list says by what.
+/// Half floats end at 65504 and lose digits below 6e-5: brighter and darker light is scaled, and the list contains the scale.
 #[test]
 fn light_that_half_floats_cannot_hold_is_scaled_and_said_so() {
     for strength in [1e9, 1.0, 1e-9] {

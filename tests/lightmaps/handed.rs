@@ -1,4 +1,4 @@
-//! A layout (TEXCOORD_1) may show surfaces as they are or mirrored, each island as it likes: their light is the same.
+//! A layout (TEXCOORD_1) may mirror any of its islands without a change of light.
 
 use super::{lookup, point_of, scene};
 use equilux_assemble::lightmap::atlas::{Atlas, Tile};

@@ -1,4 +1,4 @@
-//! What light a lightmap holds.
+//! The light in lightmaps.
 
 use super::{lookup, point_of, scene};
 use equilux_assemble::lightmap::Lightmap;
@@ -76,7 +76,7 @@ fn even_light_stays_even_everywhere() {
     }
 }
 
-/// A wish to stop ends a lightmap; one from before it began, when the exchange was to end, does not.
+/// A request to stop ends a lightmap; one from before it began, which ended the exchange, does not.
 #[test]
 fn a_lightmap_can_be_stopped_while_it_is_made() {
     let scene = shapes();

@@ -1,4 +1,4 @@
-//! Lightmaps: what lies where in them, what light they hold, and what viewers make of the models that carry them.
+//! Lightmaps: layout, light, and the models with lightmaps in viewers.
 
 mod authored;
 mod borders;

@@ -1,4 +1,4 @@
-//! Where things lie in a lightmap, for random parts in random places.
+//! Lightmap layout, for random parts in random places.
 
 use super::{point_of, scene};
 use equilux_assemble::lightmap::atlas::Atlas;

@@ -1,5 +1,5 @@
-//! What others make of our models: the Khronos validator, and three.js in a headless browser. Both run under Node.js, from
-//! `tests/viewer`; where they are not installed these tests say so and pass.
+//! Our models in other programs: the Khronos validator, and three.js in a headless browser. Both run under Node.js,
+//! from `tests/viewer`; if they are not installed, these tests print a message and pass.
 
 use super::files::{baked, texels};
 use equilux_assemble::lightmap::Units;

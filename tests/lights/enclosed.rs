@@ -1,4 +1,4 @@
-//! Lamps in closed meshes, and lamps that light nothing, are named; lamps in rooms are not.
+//! Notes name lamps in closed meshes and lamps that light nothing, but not lamps in rooms.
 
 use equilux_bake::oven::prepare::Division;
 use equilux_formats::{Material, Part};

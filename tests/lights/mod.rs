@@ -1,4 +1,4 @@
-//! Lights that are no surfaces: closed forms for lamps, suns and skies, what they do to the scene, and what they cost.
+//! Punctual lights, suns and skies: closed forms, effects on the scene, and cost.
 
 mod enclosed;
 mod points;
@@ -204,13 +204,10 @@ fn half_open() -> Part {
 #[test]
 fn a_uniform_sky_lights_the_floor_of_an_open_box_through_its_opening() {
     let workshop = Workshop::with(&[Node::new("box", half_open())]);
-    let job = workshop.job(Division::Authored);
-    let preparation =
-        Preparation { element_size: Some(ElementSize::Metres(0.5)), ..job.settings.preparation.clone() };
+    let mut job = workshop.job(Division::Authored);
     let table = workshop.path("elements.csv");
-    let mut job = job;
     job.settings.sky = Some(Sky::Uniform(Rgb([2.0; 3])));
-    job.settings.preparation = preparation;
+    job.settings.preparation.element_size = Some(ElementSize::Metres(0.5));
     job.outputs.elements = Some(table.clone());
     let report = assembled(&job);
     assert!(report.form_factors_computed > 0, "the sky is seen");
@@ -253,17 +250,12 @@ fn light_of_lamps_goes_to_and_fro_as_that_of_surfaces() {
     let model = Model::of(&[Node::new("box", room(grey(0.5, 0.0), DVec3::ZERO, DVec3::splat(2.0)))]);
     let workshop = Workshop::new();
     with_light(model, lamp).write(&workshop.path("scene.glb"));
-    let job = workshop.job(Division::Authored);
-    let preparation =
-        Preparation { element_size: Some(ElementSize::Metres(0.25)), ..job.settings.preparation.clone() };
+    let mut job = workshop.job(Division::Authored);
     let table = workshop.path("elements.csv");
-    let report = assembled(&{
-        let mut job = job;
-        job.settings.preparation = preparation;
-        job.outputs.elements = Some(table.clone());
-        job.outputs.verify = true;
-        job
-    });
+    job.settings.preparation.element_size = Some(ElementSize::Metres(0.25));
+    job.outputs.elements = Some(table.clone());
+    job.outputs.verify = true;
+    let report = assembled(&job);
     let found = Table::read(&table);
     let arriving: f64 =
         (0..found.rows()).map(|row| found.number(row, "area") * found.number(row, "H_r")).sum();

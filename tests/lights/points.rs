@@ -1,4 +1,4 @@
-//! Light at single points: closed forms, and what is said of points that are nowhere.
+//! Light at single points: closed forms, and messages about points off all surfaces.
 
 use super::{floor, light, of_file, placed};
 use equilux_assemble::gather::Gather;

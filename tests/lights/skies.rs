@@ -1,4 +1,4 @@
-//! Skies: which way a picture turns, what it lights, and what is refused.
+//! Skies: orientation, illumination, and refused pictures.
 
 use super::floor;
 use equilux_assemble::gather::sky::Sky;
@@ -26,7 +26,7 @@ fn picture(workshop: &Workshop, ending: &str, radiance: impl Fn(DVec3) -> f32) -
 
 #[test]
 fn a_sky_picture_shines_from_where_it_shows_light() {
-    // Two floors back to back, and a wall each way: only what looks to the bright side gets light.
+    // Two floors back to back, and a wall each way: only surfaces that face the bright side get light.
     let sheet = |u: DVec3, v: DVec3| rectangle(part(grey(0.0, 0.0)), DVec3::ZERO, u, v);
     let facing = [
         ("x", sheet(DVec3::Y, DVec3::Z), DVec3::X),
@@ -40,17 +40,14 @@ fn a_sky_picture_shines_from_where_it_shows_light() {
         for (name, part, normal) in &facing {
             let workshop = Workshop::with(&[Node::new(name, part.clone())]);
             let sky = picture(&workshop, ending, |to| if to.dot(towards) > 0.0 { 1.0 } else { 0.0 });
-            let job = workshop.job(Division::Authored);
+            let mut job = workshop.job(Division::Authored);
             let table = workshop.path("elements.csv");
-            assembled(&{
-                let mut job = job;
-                job.settings.sky = Some(Sky::Picture(sky));
-                job.outputs.elements = Some(table.clone());
-                job
-            });
+            job.settings.sky = Some(Sky::Picture(sky));
+            job.outputs.elements = Some(table.clone());
+            assembled(&job);
             let found = Table::read(&table).number(0, "H_r");
-            // Half the sky is bright: all of what a surface that looks there sees, none of what one looking away does, and half of
-            // what the others do; pixels and cells are a few degrees wide.
+            // Half the sky is bright: all that surfaces facing it see, none of what surfaces facing away see, and half
+            // of what the others see; pixels and cells are a few degrees wide.
             let expected = PI * (1.0 + normal.dot(towards)) / 2.0;
             assert!(
                 (found - expected).abs() <= 0.03 * PI,
@@ -80,11 +77,8 @@ fn right_of_the_middle_of_a_sky_picture_is_plus_x() {
             let mut job = workshop.job(Division::Authored);
             job.settings.sky = Some(Sky::Picture(sky));
             job.outputs.elements = Some(table.clone());
-            assembled(&{
-                let mut job = job;
-                job.outputs.pictures = Pictures::None;
-                job
-            });
+            job.outputs.pictures = Pictures::None;
+            assembled(&job);
             std::fs::read(&table).expect("a table")
         });
         assert!(first == second, "one picture with two signatures, column {column}");
@@ -105,9 +99,8 @@ fn a_sky_does_not_turn_with_the_scene() {
     // One file, turned as a whole: nothing moves as its parts see each other, and the cache holds what it was before.
     let workshop = Workshop::new();
     let sky = picture(&workshop, "exr", |to| if to.x > 0.0 { 1.0 } else { 0.0 });
-    let job = workshop.job(Division::Authored);
+    let mut job = workshop.job(Division::Authored);
     let table = workshop.path("elements.csv");
-    let mut job = job;
     job.settings.sky = Some(Sky::Picture(sky));
     job.outputs.elements = Some(table.clone());
     let sheet = rectangle(part(grey(0.0, 0.0)), DVec3::ZERO, DVec3::Y, DVec3::Z);

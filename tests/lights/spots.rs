@@ -1,4 +1,4 @@
-//! Cones of spots: their power is what the extension says, however sharp their edges and however large the elements are.
+//! Cones of spots have the power that the extension defines, for any sharpness of their edges and size of elements.
 
 use super::{direct, floor, light, of_file, placed};
 use equilux_formats::LightKind;

@@ -1,4 +1,4 @@
-//! What the intensities of a file's lamps mean, and what is said about it.
+//! Units of a file's lamps, and notes about them.
 
 use super::floor;
 use equilux_assemble::outputs::requests::Pictures;
@@ -31,11 +31,8 @@ fn absorbed(workshop: &Workshop, units: Option<LightUnits>) -> (f64, Vec<String>
     let mut job = workshop.job(Division::Authored);
     job.settings.light_units = units;
     job.outputs.pictures = Pictures::None;
-    let report = assembled(&{
-        let mut job = job;
-        job.outputs.elements = Some(table.clone());
-        job
-    });
+    job.outputs.elements = Some(table.clone());
+    let report = assembled(&job);
     let table = Table::read(&table);
     let power = (0..table.rows()).map(|row| table.number(row, "area") * table.number(row, "H_r")).sum();
     (power, report.notes)

@@ -1,4 +1,4 @@
-//! What a browser shows of the live page. Where there is no Node.js or no browser, this says so and passes.
+//! The live page in a browser. Without Node.js or a browser, these tests print a message and pass.
 
 use super::viewers::endless;
 use base64::Engine;
@@ -20,7 +20,7 @@ use image::RgbImage;
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 
-/// Rows and columns of points that are looked at.
+/// Rows and columns of sampled points.
 const POINTS: (usize, usize) = (40, 32);
 
 /// The elements of the scene that the program is given.
@@ -155,7 +155,7 @@ fn the_page_shows_the_light_as_it_grows_and_stops_it() {
     views_differ(&found["views"]);
 }
 
-/// Every view shows something else, and more than one colour.
+/// Every view differs, and shows more than one colour.
 fn views_differ(views: &Value) {
     let views: Vec<(&String, RgbImage)> =
         views.as_object().expect("views").iter().map(|(name, shot)| (name, picture(shot))).collect();

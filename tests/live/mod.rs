@@ -1,4 +1,4 @@
-//! The live page: what it shows, who may ask, and that it can end an exchange.
+//! The live page: contents, access control, and stopping an exchange.
 
 mod browser;
 mod page;

@@ -9,7 +9,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-/// Far more than anything here takes.
+/// Timeout, far above the duration of any step.
 pub const PATIENCE: Duration = Duration::from_secs(60);
 
 /// A running program and its page; the program is ended whatever happens.
@@ -20,7 +20,7 @@ pub struct Page {
     stdout: Receiver<String>,
 }
 
-/// An answer.
+/// A response.
 #[derive(Debug)]
 pub struct Answer {
     /// Such as 200.
@@ -61,7 +61,7 @@ impl Page {
         format!("{path}{name}")
     }
 
-    /// What the server says to a request with these header lines and nothing else.
+    /// The response to a request with only these header lines.
     pub fn ask(&self, method: &str, path: &str, headers: &[&str]) -> Answer {
         let mut stream = self.open(method, path, headers);
         let mut bytes = Vec::new();
@@ -72,18 +72,18 @@ impl Page {
         Answer { status, head, body: bytes[end + 4..].to_vec() }
     }
 
-    /// What the server says to the page itself.
+    /// The response to a request from the page itself.
     pub fn fetch(&self, name: &str) -> Answer {
         self.ask("GET", &self.path(name), &[&format!("Host: {}", self.host())])
     }
 
-    /// What the server says to the page itself when it wants something done.
+    /// The response to a command from the page itself.
     pub fn post(&self, name: &str) -> Answer {
         let (host, origin) = (format!("Host: {}", self.host()), format!("Origin: http://{}", self.host()));
         self.ask("POST", &self.path(name), &[&host, &origin])
     }
 
-    /// A request that is sent; what is answered is up to the caller.
+    /// Sends a request; the caller reads the response.
     pub fn open(&self, method: &str, path: &str, headers: &[&str]) -> TcpStream {
         let mut stream = TcpStream::connect(self.host()).expect("the server listens");
         stream.set_read_timeout(Some(PATIENCE)).expect("a time limit");
@@ -93,14 +93,14 @@ impl Page {
         stream
     }
 
-    /// The news from now on.
+    /// The stream of events from now on.
     pub fn news(&self) -> impl Iterator<Item = Value> + use<> {
         let stream = self.open("GET", &self.path("events"), &[&format!("Host: {}", self.host())]);
         let lines = BufReader::new(stream).lines().map_while(Result::ok);
         lines.filter_map(|line| serde_json::from_str(line.strip_prefix("data: ")?).ok())
     }
 
-    /// Wait until news say so, and return the run's status then.
+    /// Waits for an event that satisfies a condition, and returns the run's status.
     pub fn wait(&self, until: impl Fn(&Value, &Value) -> bool) -> Value {
         let (start, mut status) = (Instant::now(), Value::Null);
         for news in self.news() {
@@ -120,7 +120,7 @@ impl Page {
         self.stdout.recv_timeout(PATIENCE).expect("something printed")
     }
 
-    /// How it ends.
+    /// Waits for its end.
     pub fn code(&mut self) -> Option<i32> {
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
@@ -132,7 +132,7 @@ impl Page {
         panic!("it did not end");
     }
 
-    /// Send it Ctrl-C.
+    /// Sends Ctrl-C.
     pub fn interrupt(&self) {
         let sent = Command::new("kill").args(["-INT", &self.child.id().to_string()]).status();
         assert!(sent.expect("kill runs").success());

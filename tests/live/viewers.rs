@@ -1,4 +1,4 @@
-//! What the live page's server grants to whom, without a browser.
+//! Access control and responses of the live page's server, without a browser.
 
 use super::page::Page;
 use equilux_tests::model::Model;

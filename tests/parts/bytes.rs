@@ -1,4 +1,4 @@
-//! The same bytes whoever computes them: a cache can be shared, and a picture compared.
+//! Results are byte-identical for any number of threads, so caches can be shared and pictures compared.
 
 use equilux_tests::rooms::furnished;
 use equilux_tests::workshop::Workshop;
@@ -30,7 +30,7 @@ fn the_same_bytes(tolerance: &str, threads: &str) {
     );
 }
 
-/// All that a run from nothing writes, by paths relative to where it wrote.
+/// All files of a run with an empty cache, by relative path.
 fn files_made_with(tolerance: &str, threads: &str, workshop: &Workshop) -> BTreeMap<PathBuf, Vec<u8>> {
     let made = "made";
     std::fs::create_dir(workshop.path(made)).expect("a new folder");

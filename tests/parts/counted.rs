@@ -1,4 +1,4 @@
-//! Elements are counted before they are made, whatever surfaces a part has.
+//! The number of elements is known before they are created, for any surfaces.
 
 use equilux_bake::elements::{ElementSize, Panels};
 use equilux_formats::{Material, Part};
@@ -6,7 +6,7 @@ use equilux_tests::shapes::{grey, joined, moved, part, rectangle, room, triangle
 use glam::{DAffine3, DVec3, dvec3};
 use proptest::prelude::*;
 
-/// Triangles of any shape, a rectangle of two that join, leaning parallelograms and a room; some seen from both sides.
+/// Triangles of any shape, a rectangle of two that join, leaning parallelograms and a room; some two-sided.
 fn any_part() -> impl Strategy<Value = Part> {
     let corner = || prop::array::uniform3(-2.0..2.0_f64).prop_map(DVec3::from_array);
     let sides = (prop::collection::vec((corner(), corner(), corner(), 0.0..1.0_f64), 0..6), any::<bool>());

@@ -1,5 +1,5 @@
-//! An edited scene takes from the cache what the edit cannot have changed, and nothing else: after each of many edits the
-//! blocks are those that are computed from nothing.
+//! An edited scene reuses exactly what the edit cannot have changed: after each of many edits the blocks equal those
+//! computed from scratch.
 
 use equilux_assemble::equation::coupling::Coupled;
 use equilux_assemble::placed_parts::PlacedParts;
@@ -74,7 +74,7 @@ impl Dice {
     }
 }
 
-/// Change one thing of the scene, and say what.
+/// Changes one object of the scene, and returns a description.
 fn edit(things: &mut Vec<Thing>, dice: &mut Dice, number: usize) -> String {
     let free: Vec<usize> =
         (0..PLACES).filter(|place| things.iter().all(|thing| thing.place != *place)).collect();
@@ -187,16 +187,11 @@ fn after_two_hundred_edits_every_form_factor_is_that_of_the_whole_matrix() {
 fn after_edits_compressed_light_is_within_what_is_proved_of_the_whole_matrix() {
     let (workshop, mut dice) = (Workshop::new(), Dice(11));
     let mut things: Vec<Thing> = (0..4).map(|place| dice.thing(place, 2 * place)).collect();
-    let job = workshop.job(Division::Authored);
+    let mut job = workshop.job(Division::Authored);
     let resolution = Resolution::for_tolerance(0.01);
-    let preparation = Preparation {
-        resolution,
-        element_size: Some(ElementSize::Metres(0.25)),
-        ..job.settings.preparation.clone()
-    };
-    let mut job = job;
     job.scene = workshop.path("scene.glb");
-    job.settings.preparation = preparation;
+    job.settings.preparation.resolution = resolution;
+    job.settings.preparation.element_size = Some(ElementSize::Metres(0.25));
     job.outputs.verify = true;
     for number in 0..12 {
         let what = edit(&mut things, &mut dice, number);

@@ -1,4 +1,4 @@
-//! Solids that reach into each other are named, with the elements that are lost in them; those that only touch are not.
+//! Notes name solids that intersect, with the number of elements inside them, but not solids that only touch.
 
 use equilux_assemble::equation::interpenetration::{ElementsInside, elements_inside, sentences};
 use equilux_bake::world::World;

@@ -1,5 +1,5 @@
-//! Copies of a part: turned, mirrored and scaled ones share its block to the bit, stretched ones do not; and copies that
-//! EXT_mesh_gpu_instancing tells of are instances like any other.
+//! Copies of a part: turned, mirrored and scaled ones share its block to the bit, stretched ones do not; and copies by
+//! EXT_mesh_gpu_instancing are instances like any other.
 
 use equilux_assemble::equation::coupling::Coupler;
 use equilux_assemble::equation::optics::whole_optics;

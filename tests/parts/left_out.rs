@@ -1,4 +1,4 @@
-//! What changes no radiosity is left out, told, and not missed.
+//! Work that does not change any radiosity is left out and reported, without a difference in the result.
 
 use equilux_assemble::exchange::settings::{Goal, Method};
 use equilux_assemble::report::Report;
@@ -56,12 +56,10 @@ fn rows_of_black_receivers_wait_for_the_end_and_lack_nothing() {
 fn parts_that_hear_nothing_new_are_not_solved() {
     let workshop = Workshop::with(&scene([0.5; 3]));
     let goal = Goal { error: 1e-3, rounds: usize::MAX };
-    let report = assembled(&{
-        let mut job = workshop.job(Division::Authored);
-        job.settings.method = Method::Jacobi;
-        job.settings.goal = goal;
-        job
-    });
+    let mut job = workshop.job(Division::Authored);
+    job.settings.method = Method::Jacobi;
+    job.settings.goal = goal;
+    let report = assembled(&job);
     // All light is in one half, then all that is new in the other, and so on to and fro.
     assert_eq!(count(&report, DARK_SOLVES), report.rounds.len(), "{:?}", report.blocks.coupling_left_out);
 }

@@ -1,5 +1,5 @@
-//! Parts and the whole are one equation: the same light however a scene is divided and solved, the same bytes whoever
-//! computes them, and nothing computed twice.
+//! Parts and the whole are one equation: the light does not depend on division and solver, bytes do not depend on
+//! threads, and nothing is computed twice.
 
 mod bytes;
 mod compressed;

@@ -2,7 +2,7 @@
 
 use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::report::Report;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::Division;
 use equilux_bake::treecode::Resolution;
 use equilux_tests::modular::{PARTS, places, write};
 use equilux_tests::workshop::{Workshop, assembled};
@@ -14,17 +14,12 @@ const ROOMS: usize = 5;
 fn verified(tolerance: f64) -> Report {
     let workshop = Workshop::new();
     let scene = write(&workshop.path(""), ROOMS, |room| room);
-    let job = workshop.job(Division::Authored);
-    let preparation =
-        Preparation { resolution: Resolution::for_tolerance(tolerance), ..job.settings.preparation.clone() };
-    let report = assembled(&{
-        let mut job = job;
-        job.scene = scene;
-        job.settings.preparation = preparation;
-        job.outputs.verify = true;
-        job.outputs.exact_rows = ExactRows::About(0);
-        job
-    });
+    let mut job = workshop.job(Division::Authored);
+    job.scene = scene;
+    job.settings.preparation.resolution = Resolution::for_tolerance(tolerance);
+    job.outputs.verify = true;
+    job.outputs.exact_rows = ExactRows::About(0);
+    let report = assembled(&job);
     assert_eq!(
         (report.parts.len(), report.blocks.self_baked),
         (PARTS, PARTS),
@@ -47,15 +42,12 @@ fn a_level_of_parts_is_lit_as_the_whole() {
 #[test]
 fn neighbourhoods_that_are_alike_share_their_blocks() {
     let workshop = Workshop::new();
-    let job = workshop.job(Division::Authored);
+    let mut job = workshop.job(Division::Authored);
     let rooms = 8;
     let scene = write(&workshop.path(""), rooms, |_| 0);
-    let report = assembled(&{
-        let mut job = job;
-        job.scene = scene;
-        job.outputs.verify = true;
-        job
-    });
+    job.scene = scene;
+    job.outputs.verify = true;
+    let report = assembled(&job);
     let off = report.verify.as_ref().expect("asked for").max_rel_diff;
     assert!(off <= 1e-9, "{off} away from the whole");
     // One room's worth is computed, and for the seven others what they see through doors of rooms further off: at the ends

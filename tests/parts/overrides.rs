@@ -1,4 +1,4 @@
-//! What extras change about materials in one place: the light there and nothing else, and never a form factor.
+//! Material changes in extras affect the light of that instance only, and no form factors.
 
 use equilux_assemble::report::Report;
 use equilux_bake::gltf_import::import_scene;

@@ -1,5 +1,5 @@
-//! Every length is in metres of the scene, whatever scales stand above a mesh: a room modelled in centimetres, positions in
-//! whole numbers, copies of several sizes.
+//! Lengths are in metres of the scene for any scale of nodes: a room modelled in centimetres, integer positions, copies
+//! of several sizes.
 
 use super::instances::floats;
 use equilux_assemble::lightmap::{LightmapOptions, Units};
@@ -84,7 +84,8 @@ fn a_room_is_the_same_in_any_units() {
         }
         for c in 0..3 {
             for (&a, &b) in channel(&texels, c).iter().zip(&channel(&found_texels, c)) {
-                // Texels between those that are gathered may be off by a hundredth, and which are gathered is a matter of rounding.
+                // Texels between those that are gathered may be off by a hundredth, and which are gathered is a matter
+                // of rounding.
                 let near = (a - b).abs() <= 0.01 * a.max(b);
                 assert!(near, "1e{power} m: a texel of {b} W/m², in metres {a}");
             }
@@ -226,7 +227,7 @@ proptest! {
     }
 }
 
-/// What a part is called by what it is: the same elements are baked once, whatever their size in a scene.
+/// The keys of parts: the same elements are baked once, whatever their size in a scene.
 #[test]
 fn a_part_baked_alone_serves_where_it_stands_larger() {
     let workshop = written(Above::PartFile, 1.0, &json!({}));

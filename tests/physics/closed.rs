@@ -1,4 +1,4 @@
-//! Closed scenes: every row sums to one, whatever stands in the way.
+//! Closed scenes: every row sums to one, whatever the occluders.
 
 use equilux_formats::{Part, Rows};
 use equilux_tests::shapes::{fine, grey, joined, moved, room, self_block, solid};

@@ -1,4 +1,4 @@
-//! Curved meshes, which hide by their silhouettes: no entry is another than clipping by every face makes it.
+//! Curved meshes, which occlude by their silhouettes: every entry equals the one from clipping by every face.
 
 use equilux_bake::form_factor::plain;
 use equilux_bake::monitor::Monitor;

@@ -1,4 +1,4 @@
-//! Truths of light that every way of computing must keep.
+//! Physical laws that every method must satisfy.
 
 mod closed;
 mod curved;

@@ -14,7 +14,7 @@ use serde_json::json;
 enum Winding {
     Outward,
     Inward,
-    /// Every third one looks inwards.
+    /// Every third one faces inwards.
     Mixed,
 }
 
@@ -103,7 +103,7 @@ fn formed(mut solid: Part, form: Form) -> Part {
     moved(solid, unscaled)
 }
 
-/// A room of three metres around a solid of this form. Both emit `shine`; if that is nothing, a lamp lights them.
+/// A room of three metres around a solid of this form. Both emit `shine`; if that is zero, a lamp lights them.
 fn around(solid: &Part, form: Form, shine: f64) -> Solved {
     let white = grey(0.5, shine);
     let mut own = formed(solid.clone(), form);
@@ -162,7 +162,7 @@ fn forms_of_a_solid_that_mean_the_same_have_the_same_light() {
 fn a_furnace_is_uniform_around_and_inside_solids_of_every_form() {
     for (name, solid) in solids() {
         for form in forms() {
-            // Everything shines, so that inner sides take part.
+            // Everything emits, so that inner sides take part.
             let found = around(&solid, form, 1.0);
             let worst = found.worst(uniform);
             // Corners in f32: the ball and the ring close to 1e-7 only.

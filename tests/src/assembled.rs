@@ -1,5 +1,5 @@
-//! Parts side by side with all their blocks, in memory: what an exchange needs, without files. Reflectance may be changed
-//! without computing a form factor.
+//! Parts with all their blocks in memory, for exchanges without files. Reflectance can be changed without computing
+//! form factors.
 
 use equilux_assemble::exchange::exchange;
 use equilux_assemble::exchange::listener::Unobserved;
@@ -29,7 +29,7 @@ pub struct Assembled {
 }
 
 impl Assembled {
-    /// These geometries with these optics; every local equilibrium by `solver`, or by what suits its size.
+    /// These geometries with these optics; every local equilibrium by `solver`, or by the default for its size.
     pub fn new(
         geometries: Vec<Geometry>,
         optics: Vec<Optics>,
@@ -51,7 +51,7 @@ impl Assembled {
         assembled
     }
 
-    /// Find the parts' own light, by `solver` or by what suits a part's size: after a change of optics.
+    /// Solves the local equilibria after a change of optics, by `solver` or by the default for a part's size.
     pub fn solve_locally(&mut self, solver: Option<LocalSolver>) {
         let parts = self.geometries.iter().zip(&self.self_blocks).zip(&self.optics);
         let local = |((geometry, block), optics): ((&Geometry, &Rows), &Optics)| {
@@ -89,7 +89,7 @@ impl Assembled {
         (0..self.geometries.len()).map(node).collect()
     }
 
-    /// Exchange until `error` is proved, in at most so many rounds.
+    /// Exchanges light until `error` is proved, in at most `rounds` rounds.
     pub fn exchange(&self, method: Method, error: f64, rounds: usize) -> Outcome {
         exchange(&self.systems(), method, Goal { error, rounds }, None, &Monitor::default(), &Unobserved)
     }

@@ -1,4 +1,4 @@
-//! Irradiance averaged over given elements, as texels of that size have it.
+//! Irradiance averaged over given elements, as in texels of that size.
 
 use crate::lit::{Lit, lit};
 use crate::table::Table;
@@ -59,7 +59,7 @@ pub fn compared(name: &str, size: f64, tolerance: f64) -> Compared {
     Compared { errors, counts: [lit.placed.world.elements.len(), elements.len()], seconds }
 }
 
-/// CPU time of this process so far, where the system tells; in hundredths of seconds.
+/// CPU time of this process so far, if the system provides it; in hundredths of seconds.
 fn cpu_seconds() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<&str> = stat.rsplit(')').next().unwrap_or("").split_whitespace().collect();

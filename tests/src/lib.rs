@@ -1,5 +1,4 @@
-//! What the tests and benchmarks share: shapes, rooms and glTF files made by hand, our programs, and the cases with
-//! known answers.
+//! Shared code of tests and benchmarks: shapes, rooms, glTF files, the two programs, and cases with known solutions.
 
 pub mod assembled;
 pub mod averages;

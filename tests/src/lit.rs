@@ -1,4 +1,4 @@
-//! A scene's light in memory, in equilibrium, to be asked for more than the outputs tell.
+//! A scene's equilibrium in memory, for tests that need more than the outputs contain.
 
 use crate::averages::mean;
 use equilux_assemble::equation::coupling::{Coupled, Coupler};
@@ -23,7 +23,7 @@ use equilux_bake::treecode::EXACT;
 use equilux_formats::{Optics, Rgb, Scene, Store};
 use std::path::Path;
 
-/// The parts of a scene in their places, and their light.
+/// The placed parts of a scene, and their light.
 #[derive(Debug)]
 pub struct Lit {
     /// The parts.
@@ -34,12 +34,12 @@ pub struct Lit {
     pub outcome: Outcome,
 }
 
-/// The light of a scene down to an error of 1e-6; what is baked goes to a folder that is gone afterwards.
+/// The light of a scene, to an error of 1e-6, with a temporary cache.
 pub fn lit(scene: &Path, wanted: &Preparation) -> Lit {
     lit_scene(&import_scene(scene).expect("a scene"), wanted)
 }
 
-/// The same of a scene in memory.
+/// The light of a scene in memory.
 pub fn lit_scene(scene: &Scene, wanted: &Preparation) -> Lit {
     let folder = tempfile::tempdir().expect("a folder");
     let (placed, coupled) = coupled_scene(scene, folder.path(), wanted);
@@ -65,7 +65,7 @@ pub fn lightmap<'a>(scene: &'a Scene, atlas: &'a Atlas, lit: &Lit, sky: f64) -> 
     Lightmap::new(scene, atlas, |texels| light.irradiance(texels), &Monitor::default()).expect("not stopped")
 }
 
-/// The parts of a scene in their places, and what couples them; what is baked goes to the folder `cache`.
+/// The placed parts of a scene, and their couplings, with the cache folder `cache`.
 pub fn coupled(scene: &Path, cache: &Path, wanted: &Preparation) -> (PlacedParts, Vec<Coupled>) {
     coupled_scene(&import_scene(scene).expect("a scene"), cache, wanted)
 }

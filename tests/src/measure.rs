@@ -1,4 +1,4 @@
-//! A level as one world: its rows at a resolution, what they cost, and the light they give. For measurements.
+//! A level as one world, for measurements: its rows at a resolution, their cost, and the resulting light.
 
 use crate::levels::furnished;
 use equilux_assemble::classic::rays::row;

@@ -1,4 +1,4 @@
-//! Parts made by hand as glTF files: in go nodes, each with a part, its place and extras; out comes a `.glb` file.
+//! Writes glTF files for tests: each node has a part, a position and extras.
 
 use equilux_formats::{Material, MaterialId, Part, Rgb, Surface, glb};
 use glam::DVec3;
@@ -11,33 +11,33 @@ use std::path::Path;
 pub struct Node {
     /// Its name.
     pub name: String,
-    /// What stands there; nothing if the extras name a part file.
+    /// Its part; none if the extras name a part file.
     pub part: Option<Part>,
-    /// Where its origin stands, metres.
+    /// Position of its origin, metres.
     pub at: DVec3,
-    /// What the author asks for, as the importer reads it.
+    /// Its extras.
     pub extras: Value,
 }
 
 impl Node {
-    /// `part` as it stands.
+    /// A node with `part` at the origin.
     pub fn new(name: &str, part: Part) -> Self {
         Self { name: name.into(), part: Some(part), at: DVec3::ZERO, extras: json!({}) }
     }
 
-    /// The contents of another file.
+    /// A node with the contents of another file.
     pub fn of_file(name: &str, file: &str) -> Self {
         Self { name: name.into(), part: None, at: DVec3::ZERO, extras: json!({ "part": file }) }
     }
 
-    /// The same node with the local solver asked for.
+    /// The same node with a local solver in its extras.
     pub fn solved_by(mut self, solver: &str) -> Self {
         self.extras["local_solver"] = json!(solver);
         self
     }
 }
 
-/// A glTF file in memory, open to damage.
+/// A glTF file in memory, which tests may change.
 #[derive(Debug, Clone)]
 pub struct Model {
     /// The JSON.
@@ -61,7 +61,7 @@ impl Model {
         model
     }
 
-    /// Replace what is at `pointer` in the JSON.
+    /// Replaces the value at `pointer` in the JSON.
     pub fn with(mut self, pointer: &str, value: Value) -> Self {
         let (parent, key) = pointer.rsplit_once('/').expect("a pointer with a slash");
         let parent = self.json.pointer_mut(parent).expect("the parent is there");
@@ -72,7 +72,7 @@ impl Model {
         self
     }
 
-    /// Add an accessor on these bytes, as glTF describes it, and give its number.
+    /// Adds an accessor on these bytes, and returns its number.
     pub fn add_accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
         self.binary.resize(self.binary.len().next_multiple_of(4), 0);
         let view = json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() });
@@ -87,7 +87,7 @@ impl Model {
         glb::file(self.json.to_string().as_bytes(), &self.binary).expect("a file of less than 4 GiB")
     }
 
-    /// Write the `.glb` file.
+    /// Writes the `.glb` file.
     pub fn write(&self, path: &Path) {
         std::fs::write(path, self.bytes()).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
@@ -116,7 +116,7 @@ impl Model {
         let length = self.binary.len() - offset;
         let view =
             self.push("bufferViews", json!({ "buffer": 0, "byteOffset": offset, "byteLength": length }));
-        // The importer does not ask for minimum and maximum, which glTF wants of positions.
+        // The importer does not need minimum and maximum, which glTF requires for positions.
         let accessor = json!({ "bufferView": view, "componentType": 5126, "type": "VEC3", "count": count,
             "min": [0, 0, 0], "max": [0, 0, 0] });
         let positions = self.push("accessors", accessor);
@@ -128,7 +128,7 @@ impl Model {
             let accessor =
                 json!({ "bufferView": view, "componentType": 5126, "type": "VEC2", "count": count });
             let accessor = json!(self.push("accessors", accessor));
-            // glTF wants a first set before the second.
+            // glTF requires a first set before the second.
             (attributes["TEXCOORD_0"], attributes["TEXCOORD_1"]) = (accessor.clone(), accessor);
         }
         let material = self.push("materials", gltf_material(&part.materials[material.index()]));
@@ -155,7 +155,7 @@ fn places(part: &Part, material: MaterialId) -> Option<Vec<f32>> {
 
 fn gltf_material(material: &Material) -> Value {
     let radiance = material.emission.map(|e| e / PI);
-    // glTF wants emissive factors in 0..1, and their strength apart.
+    // glTF requires emissive factors in 0..1, and a separate strength.
     let strength = radiance.iter().fold(1.0, |most: f64, &l| most.max(l));
     let Rgb([r, g, b]) = material.reflectance;
     json!({

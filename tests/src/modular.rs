@@ -1,4 +1,4 @@
-//! A level as editors build them: few part files, placed many times by a scene that holds nothing else. Rooms in a row with
+//! A modular level: few part files, placed many times by a scene without other contents. Rooms in a row with
 //! corridors between their doors, furnished with crates and pillars, each lit by a lamp.
 //!
 //! Sizes are multiples of 2⁻³ m, so that rooms and corridors meet exactly.
@@ -14,9 +14,9 @@ use std::path::{Path, PathBuf};
 /// From the middle of a room to that of the next: 4 m of room, 2 m of corridor.
 const PITCH: f64 = 6.0;
 
-/// Writes part files and the scene of so many rooms into `folder`; returns the scene's file. In each room stand three crates
-/// and three pillars below a lamp; at the ends of the row doors are closed. `style` tells how a room is furnished by its
-/// number: rooms of one style are alike.
+/// Writes part files and a scene of this many rooms into `folder`, and returns the scene's file. Each room has three
+/// crates and three pillars below a lamp; doors at the ends of the row are closed. `style` returns the furnishing of a
+/// room by its number: rooms of one style are alike.
 pub fn write(folder: &Path, rooms: usize, style: impl Fn(usize) -> usize) -> PathBuf {
     let parts = folder.join("parts");
     std::fs::create_dir_all(&parts).expect("a folder");
@@ -79,7 +79,7 @@ fn nodes(rooms: usize, style: impl Fn(usize) -> usize) -> Vec<Value> {
     nodes
 }
 
-/// A node in whose place a part file stands.
+/// A node with a part file.
 fn node(part: &str, at: DVec3, turn: DQuat, scale: DVec3) -> Value {
     json!({ "name": part, "translation": at.to_array(), "rotation": turn.to_array(), "scale": scale.to_array(),
         "extras": { "part": format!("parts/{part}.glb") } })

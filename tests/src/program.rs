@@ -1,4 +1,4 @@
-//! Our two programs as a person runs them.
+//! The executables of the two programs.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,10 +11,11 @@ pub fn program(name: &str) -> PathBuf {
     folder.join(format!("{name}{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// The folder of programs beside this test, brought up to date. Cargo tells a test where the programs of its own package
-/// are, but not those of a dependency, and with `cargo test -p equilux-tests` it does not even build them. So cargo is
-/// asked once, with the profile and target folder of this test. For the whole workspace, because another choice of
-/// packages may turn on other features and build everything anew; after `cargo test --workspace` nothing is left to do.
+/// The folder of programs beside this test, brought up to date. Cargo tells a test where the programs of its own
+/// package are, but not those of a dependency, and with `cargo test -p equilux-tests` it does not even build them. So
+/// cargo builds them once, with the profile and target folder of this test. It builds the whole workspace, because
+/// another choice of packages may enable other features and rebuild everything; after `cargo test --workspace` they are
+/// up to date.
 fn built() -> PathBuf {
     let test = std::env::current_exe().expect("a test knows its own file");
     // <target>/<profile>/deps/suite-<hash>

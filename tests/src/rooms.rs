@@ -1,4 +1,4 @@
-//! Small closed rooms for tests of contracts: a few hundred elements, every row of the whole matrix sums to one.
+//! Small closed rooms: a few hundred elements; every row of the whole matrix sums to one.
 
 use crate::model::Node;
 use crate::shapes::{joined, part, rectangle, room, solid};

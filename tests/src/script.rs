@@ -1,11 +1,11 @@
-//! Scripts of `tests/viewer`, which run under Node.js. In and out goes JSON.
+//! Runs scripts of `tests/viewer` under Node.js, with JSON input and output.
 
 use serde_json::Value;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a script answers; none, and a line that says why, if it cannot be run here.
+/// The output of a script; none, with a printed reason, if it cannot be run here.
 pub fn script(name: &str, input: &Value) -> Option<Value> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("viewer");
     let missing = if !folder.join("node_modules").exists() {

@@ -30,7 +30,7 @@ pub fn part(material: Material) -> Part {
     }
 }
 
-/// Put parts as they stand into one.
+/// Merges parts into one.
 pub fn joined(parts: impl IntoIterator<Item = Part>) -> Part {
     let mut all = Part { materials: vec![], ..part(grey(0.0, 0.0)) };
     for part in parts {
@@ -43,29 +43,29 @@ pub fn joined(parts: impl IntoIterator<Item = Part>) -> Part {
     all
 }
 
-/// Add a quad to the part's first material, counter-clockwise from the front.
+/// Adds a quad to the part's first material, counter-clockwise from the front.
 pub fn quad(mut part: Part, corners: [DVec3; 4]) -> Part {
     part.surfaces.push(Surface::new(Corners::quad(corners), MaterialId(0)));
     part
 }
 
-/// Add a triangle to the part's first material, counter-clockwise from the front.
+/// Adds a triangle to the part's first material, counter-clockwise from the front.
 pub fn triangle(mut part: Part, corners: [DVec3; 3]) -> Part {
     part.surfaces.push(Surface::new(Corners::triangle(corners), MaterialId(0)));
     part
 }
 
-/// The rectangle spanned by `u` and `v` from `origin`; its front looks along u × v.
+/// The rectangle spanned by `u` and `v` from `origin`; its front faces along u × v.
 pub fn rectangle(part: Part, origin: DVec3, u: DVec3, v: DVec3) -> Part {
     quad(part, [origin, origin + u, origin + u + v, origin + v])
 }
 
-/// A box that one looks at from outside.
+/// A box seen from outside.
 pub fn solid(material: Material, low: DVec3, high: DVec3) -> Part {
     box_part(material, low, high, false)
 }
 
-/// A box that one stands in.
+/// A box seen from inside.
 pub fn room(material: Material, low: DVec3, high: DVec3) -> Part {
     box_part(material, low, high, true)
 }
@@ -99,7 +99,7 @@ pub fn moved(mut part: Part, placement: DAffine3) -> Part {
     part
 }
 
-/// The part's geometry, as its own mesh has it.
+/// The part's geometry with the elements of its own mesh.
 pub fn mesh(part: &Part) -> Geometry {
     subdivide(part, ElementSize::Mesh)
 }
@@ -114,7 +114,7 @@ pub fn alone(geometry: &Geometry) -> World {
     World::new([(geometry, DAffine3::IDENTITY)])
 }
 
-/// The block from one instance to others of a world; columns count through the nodes of all.
+/// The block from one instance to others of a world; with a column for each node of the world.
 pub fn coupling(world: &World, receivers: usize, senders: &[usize], resolution: Resolution) -> Rows {
     let receivers = Audience::Instance(receivers);
     let request = Request::new(world, receivers, senders, resolution);

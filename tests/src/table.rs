@@ -1,4 +1,4 @@
-//! A CSV file whose columns are found by name: numbers, and names nobody reads here.
+//! A CSV file with columns found by name; only numbers are read.
 
 use glam::{DVec3, dvec3};
 use std::collections::HashMap;

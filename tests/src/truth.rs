@@ -1,10 +1,10 @@
-//! Our light against a path tracer's, element by element of its mesh.
+//! Compares the light of this project with that of a path tracer, element by element of the path tracer's mesh.
 
 use crate::table::Table;
 use glam::DVec3;
 use std::fmt::{self, Display, Formatter};
 
-/// What we found on one element of the truth.
+/// Our result on one element of the path tracer.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Found {
     /// m².
@@ -39,7 +39,7 @@ pub fn gathered(
     found
 }
 
-/// For each of our elements the one of the truth that looks the same way and whose centroid is nearest.
+/// For each of our elements, the path tracer's element that faces the same way and whose centroid is nearest.
 fn owners(truth: &Table, ours: Vec<(DVec3, DVec3)>) -> Vec<usize> {
     let truth = places(truth);
     let owner = |(centroid, normal)| {

@@ -1,4 +1,4 @@
-//! A folder to try things in: scenes written there, assembled by library or program, nothing left behind.
+//! A temporary folder for tests: writes scenes, and runs the library or the programs on them.
 
 use crate::model::{Model, Node};
 use crate::program::program;
@@ -16,44 +16,44 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::TempDir;
 
-/// No test's program takes a tenth of this, so whoever does hangs.
+/// Timeout of programs: ten times what any of them takes.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The folder.
 #[derive(Debug)]
 pub struct Workshop(TempDir);
 
-/// How a program ended.
+/// The result of a program.
 #[derive(Debug)]
 pub struct Ended {
     /// Its exit code; none if a signal ended it.
     pub code: Option<i32>,
-    /// What it printed.
+    /// Its standard output.
     pub stdout: String,
-    /// What it said of itself.
+    /// Its standard error.
     pub stderr: String,
 }
 
 impl Workshop {
-    /// An empty one.
+    /// An empty folder.
     #[expect(clippy::new_without_default, reason = "a folder is made, which no default should do")]
     pub fn new() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder"))
     }
 
-    /// One that holds `nodes` as scene.glb.
+    /// A folder with the scene `nodes` as scene.glb.
     pub fn with(nodes: &[Node]) -> Self {
         let workshop = Self::new();
         Model::of(nodes).write(&workshop.path("scene.glb"));
         workshop
     }
 
-    /// A file or folder in it.
+    /// The path of a file or folder in it.
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    /// Runs one of our programs in the folder.
+    /// Runs `bake` or `assemble` in the folder.
     pub fn run(&self, name: &str, arguments: &[&str]) -> Ended {
         let output = Command::new(program(name))
             .args(arguments)
@@ -65,7 +65,7 @@ impl Workshop {
         Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
     }
 
-    /// What the library is asked for by default: scene.glb in elements of a metre.
+    /// The default job of tests: scene.glb with elements of a metre.
     pub fn job(&self, division: Division) -> Job {
         let mut job = Job::new(self.path("scene.glb"));
         job.settings.cache = self.path("cache");
@@ -87,6 +87,12 @@ impl Workshop {
         gather(&self.path(name), &mut files);
         files
     }
+}
+
+/// `job` after `change`.
+pub fn changed(mut job: Job, change: impl FnOnce(&mut Job)) -> Job {
+    change(&mut job);
+    job
 }
 
 /// Assembles, and expects no error.

@@ -1,5 +1,5 @@
-//! The light is that of the equation, whoever solves it: by any exchange, any local solver, any division and from any
-//! start, answers differ by no more than what is proved of each.
+//! The solution does not depend on the method: with any exchange, local solver, division and start, results differ by
+//! no more than their proved error bounds.
 
 use equilux_assemble::exchange::exchange;
 use equilux_assemble::exchange::listener::Unobserved;
@@ -20,7 +20,7 @@ const METHODS: [Method; 4] = [Method::Auto, Method::Jacobi, Method::GaussSeidel,
 const SOLVERS: [LocalSolver; 4] =
     [LocalSolver::Direct, LocalSolver::GaussSeidel, LocalSolver::Progressive, LocalSolver::Iterative];
 
-/// Rounds after which a method is no longer waited for; its bound must hold all the same.
+/// The largest number of rounds of a method; its bound must hold nevertheless.
 const ROUNDS: usize = 400;
 
 prop_compose! {
@@ -71,7 +71,7 @@ proptest! {
         let parts = assembled(&scene, cells, solver);
         let exact = parts.exchange(Method::Gmres, 0.0, 4000);
         prop_assert!(exact.converged, "nothing to compare with");
-        // The reference is itself only as good as rounding lets it be; a bound of a millionth of what is asked for is enough.
+        // The reference is itself only as good as rounding lets it be; a bound of a millionth of the requested one is enough.
         prop_assert!(exact.convergence.relative_bound < 1e-9, "reference within {:e}", exact.convergence.relative_bound);
         for method in METHODS {
             let systems = parts.systems();

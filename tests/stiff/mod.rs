@@ -1,5 +1,5 @@
-//! The cases with known answers, as `stability` prints them: one test a theme; and that the way of solving is no part of the
-//! answer.
+//! The cases with known solutions, as `stability` prints them, one test a theme; and the independence of the solution
+//! from the method.
 
 mod methods;
 

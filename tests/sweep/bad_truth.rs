@@ -1,4 +1,4 @@
-//! A table that is no reference light of the scene is refused with an error that names it.
+//! A table that is not a reference of the scene is refused with an error that names it.
 
 use super::{FOLDER, workshop};
 

@@ -1,4 +1,4 @@
-//! Images as files: edits that compute no form factors, repaints, and what is refused.
+//! Image files: edits that compute no form factors, repaints, and refusals.
 
 use super::*;
 use equilux_assemble::lightmap::Lightmap;

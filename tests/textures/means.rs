@@ -1,4 +1,4 @@
-//! Averages of textures and vertex colours over elements, against what they are by hand.
+//! Averages of textures and vertex colours over elements, compared with values computed by hand.
 
 use super::*;
 use equilux_bake::elements::bisect::Cut;

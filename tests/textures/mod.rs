@@ -1,4 +1,4 @@
-//! Textures and vertex colours: what elements reflect and emit where an author painted them.
+//! Textures and vertex colours: reflectance and emission of textured elements.
 
 mod files;
 mod means;

@@ -1,6 +1,5 @@
-//! Each scene against light that another program found by other means: path tracing, which states its own noise
-//! as standard errors. `scenes/<name>/truth.csv` holds one line an element; `scenes/README.md` says what its
-//! columns mean.
+//! Compares each scene with the result of a path tracer, which states its noise as standard errors.
+//! `scenes/<name>/truth.csv` has one line an element; `scenes/README.md` describes its columns.
 
 mod points;
 mod target;
@@ -18,8 +17,8 @@ use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, gathered, places};
 use std::path::{Path, PathBuf};
 
-/// What a path tracer and collocation at centroids may differ by once the noise is out: the light within a sender is
-/// taken to be constant. Measured: 0.35 % to 0.83 %.
+/// Largest difference between a path tracer and collocation at centroids, without noise: collocation takes the light
+/// within a sender to be constant. Measured: 0.35 % to 0.83 %.
 const TOLERANCE: f64 = 0.01;
 
 #[test]

@@ -1,4 +1,4 @@
-//! An error that is asked for, measured against path tracing.
+//! The requested error, measured against path tracing.
 
 use super::points::off;
 use equilux_assemble::outputs::requests::Pictures;

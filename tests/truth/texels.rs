@@ -3,7 +3,7 @@
 
 use equilux_tests::averages::{Compared, compared};
 
-/// What averages may be off by, of the mean in RMS, besides the truth's own noise.
+/// Largest RMS error of averages relative to the mean, without the truth's own noise.
 const TOLERANCE: f64 = 0.01;
 
 #[test]

@@ -1,4 +1,4 @@
-//! Scenes far from the origin of their file: the same light, in the file's coordinates, or a refusal that says why.
+//! Scenes far from the origin of their file: the same light, in the file's coordinates, or a refusal with a reason.
 
 use equilux_tests::cases::solve::{Setting, Solved, solved_file};
 use equilux_tests::model::{Model, Node};

@@ -1,5 +1,5 @@
-//! Scenes as people leave them: faces on faces, walls inside out, far from the origin. The light is right, or a note says
-//! what is wrong.
+//! Untidy scenes: overlapping faces, walls inside out, coordinates far from the origin. The light is right, or a note
+//! names the problem.
 
 mod far;
 mod notes;

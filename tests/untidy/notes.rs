@@ -1,4 +1,4 @@
-//! Notes that say what is wrong with a scene, and none where nothing is.
+//! Notes name problems of a scene, and there are none without problems.
 
 use equilux_formats::Part;
 use equilux_tests::cases::solve::{Setting, light};
@@ -10,7 +10,7 @@ fn notes(nodes: &[Node], size: f64) -> Vec<String> {
     light(nodes, &Setting::metres(size)).report.notes
 }
 
-/// Those that judge the scene or its light.
+/// The notes about the scene or its light.
 fn judgements(notes: &[String]) -> Vec<&String> {
     let words = ["black back", "sees", "absorbs", "in one plane"];
     notes.iter().filter(|note| words.iter().any(|word| note.contains(word))).collect()
@@ -55,7 +55,7 @@ fn sheets_and_lamps_that_show_both_sides_are_not_named() {
     assert!(judgements(&said).is_empty(), "{said:?}");
 }
 
-/// The crate's bottom lies in the plane of the floor's other side, where nobody looks.
+/// The crate's bottom lies in the plane of the floor's other side, which is never seen.
 #[test]
 fn a_crate_on_a_two_sided_floor_is_not_named() {
     let mut walls = hall();

@@ -1,4 +1,4 @@
-//! Faces that lie on each other in one plane count once, whether they are of one part, of several, or copies of one.
+//! Coplanar faces that overlap count once, within a part, between parts, and between instances of a part.
 
 use equilux_formats::{Part, Rgb};
 use equilux_tests::cases::solve::{Lit, Setting, Solved, solved_file};
@@ -30,7 +30,7 @@ fn laid(rug: Rug, rho: f64) -> Part {
 /// A furnace around these nodes: everything has a radiosity of 1.
 fn furnace(rugs: Vec<Node>) -> Vec<Node> {
     let walls = room(grey(0.5, 0.5), DVec3::ZERO, dvec3(2.0, 1.0, 2.0));
-    // What the rugs' black backs hide from the floor is not asked for.
+    // What the rugs' black backs hide from the floor does not matter here.
     std::iter::once(Node::new("room", walls)).chain(rugs).collect()
 }
 
@@ -42,7 +42,7 @@ fn is_rug(lit: &Lit) -> bool {
     lit.centroid.y == 0.5
 }
 
-/// How many cells any of the rugs covers.
+/// The number of cells that any rug covers.
 fn covered(rugs: &[Rug]) -> usize {
     let is_in =
         |x: usize, z: usize| rugs.iter().any(|r| (r[0]..r[2]).contains(&x) && (r[1]..r[3]).contains(&z));

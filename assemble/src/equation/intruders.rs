@@ -3,7 +3,7 @@
 //! The hull is bounded by pairs of parallel planes in thirteen directions (Klosowski et al. 1998, 26-DOP). It
 //! contains the convex hull, so no intruder is missed; the cells of a bisection touch it only from outside.
 
-use equilux_bake::geometry::polygon::{Side, clip};
+use equilux_bake::geometry::polygon::{Clipped, clip};
 use equilux_bake::geometry::tolerance::FLATNESS;
 use equilux_formats::{Face, Geometry, Instance};
 use glam::{DAffine3, DVec3, dvec3};
@@ -49,9 +49,9 @@ impl Hull {
         for &(direction, low, high) in &self.slabs {
             for (sign, limit) in [(1.0, low), (-1.0, -high)] {
                 match clip(&rest, |p| sign * p.dot(direction) - limit) {
-                    Side::All => {}
-                    Side::None => return false,
-                    Side::Piece(piece) => rest = piece.to_vec(),
+                    Clipped::All => {}
+                    Clipped::None => return false,
+                    Clipped::Piece(piece) => rest = piece.to_vec(),
                 }
             }
         }

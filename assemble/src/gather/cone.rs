@@ -2,7 +2,7 @@
 //! KHR_lights_punctual: I(θ)/I = clamp(cos θ · s + o, 0, 1)², s = 1/(cos inner − cos outer), o = −s cos outer.
 
 use crate::gather::surface_piece::{cells, centre};
-use equilux_bake::geometry::polygon::{Polygon, Side, clip};
+use equilux_bake::geometry::polygon::{Clipped, Polygon, clip};
 use equilux_bake::geometry::solid_angle::solid_angle;
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -57,9 +57,9 @@ impl Cone {
         let mut within: Polygon = polygon.iter().copied().collect();
         for plane in self.around {
             match clip(&within, |p| plane.dot(p)) {
-                Side::All => {}
-                Side::None => return 0.0,
-                Side::Piece(piece) => within = piece,
+                Clipped::All => {}
+                Clipped::None => return 0.0,
+                Clipped::Piece(piece) => within = piece,
             }
         }
         self.over_cells(&within, normal, MAX_DIVISIONS)

@@ -5,7 +5,7 @@
 
 use crate::elements::clusters;
 use crate::geometry::aabb::Aabb;
-use crate::geometry::polygon::{Side, clip, quads_and_triangles};
+use crate::geometry::polygon::{Clipped, clip, quads_and_triangles};
 use crate::geometry::tolerance::ON_CUT;
 use equilux_formats::{Element, Face, FaceId, Geometry};
 use glam::DVec3;
@@ -105,9 +105,9 @@ fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f
             if element.normal[axis] * side > 0.0 { vec![element.corners] } else { vec![] }
         } else {
             match clip(corners, &height) {
-                Side::All => vec![element.corners],
-                Side::None => vec![],
-                Side::Piece(piece) => quads_and_triangles(&piece),
+                Clipped::All => vec![element.corners],
+                Clipped::None => vec![],
+                Clipped::Piece(piece) => quads_and_triangles(&piece),
             }
         };
         for piece in pieces {
@@ -125,8 +125,8 @@ fn half(geometry: &Geometry, axis: usize, side: f64, height: impl Fn(DVec3) -> f
 
 fn clip_face(face: &Face, height: impl Fn(DVec3) -> f64) -> Face {
     match clip(&face.corners, height) {
-        Side::Piece(piece) => Face { corners: piece.to_vec(), normal: face.normal },
-        Side::All | Side::None => face.clone(),
+        Clipped::Piece(piece) => Face { corners: piece.to_vec(), normal: face.normal },
+        Clipped::All | Clipped::None => face.clone(),
     }
 }
 

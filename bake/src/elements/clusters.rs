@@ -11,7 +11,7 @@ use std::collections::HashMap;
 
 /// An element counts as covered if an obstacle in front of it is nearer than this share of its face's extent. Covered
 /// elements share clusters only with covered elements.
-const COVERED: f64 = 0.1;
+const COVERED_WITHIN: f64 = 0.1;
 
 /// The geometry of these elements and faces; elements are sorted into the order of their hierarchy.
 pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
@@ -54,7 +54,7 @@ fn face_sides(elements: &[Element]) -> Vec<SideElements> {
     }
     let index = RayIndex::new(elements);
     let is_covered = |e: &Element| {
-        let near = COVERED * boxes[&e.face.0].diagonal();
+        let near = COVERED_WITHIN * boxes[&e.face.0].diagonal();
         index.first_hit(e.centroid, e.normal).is_some_and(|hit| hit.distance < near)
     };
     // Elements of one face can differ in light: a lamp set into a ceiling, the floor beneath a crate.

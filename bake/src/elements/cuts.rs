@@ -11,9 +11,9 @@ use glam::DVec3;
 use smallvec::{SmallVec, smallvec};
 
 /// A triangle whose longest edge exceeds this multiple of its height is a sliver.
-const SLIVER: f64 = 4.0;
+const SLIVER_ASPECT: f64 = 4.0;
 /// Rows run along the shortest edge if it is at most this multiple of the triangle's height; longer edges make skewed rows.
-const LEANING: f64 = 2.0;
+const MAX_SKEW: f64 = 2.0;
 /// How a triangle or quad, or a piece of one, is cut.
 enum Pattern {
     /// The number of quads along the first and along the second edge. Neighbours share bit-identical corners.
@@ -50,7 +50,7 @@ fn of_quad([a, b, c, d]: [DVec3; 4], size: f64) -> SmallVec<[Pattern; 4]> {
     let [across, along] = [width, length].map(|edge| pieces(edge, size));
     let grid = Pattern::Grid([a, b, c, d], [across, along]);
     let area = Corners::quad([a, b, c, d]).double_area_vector().length() / 2.0;
-    if across == 1 || along == 1 || !exceeds(width * length, SLIVER * area) {
+    if across == 1 || along == 1 || !exceeds(width * length, SLIVER_ASPECT * area) {
         return smallvec![grid];
     }
     let halves = match exceeds((c - a).length(), (d - b).length()) {
@@ -66,7 +66,7 @@ fn of_triangle([a, b, c]: [DVec3; 3], size: f64) -> SmallVec<[Pattern; 4]> {
     let longest = (b - a).length().max((c - b).length()).max((a - c).length());
     let height = Corners::triangle([a, b, c]).double_area_vector().length() / longest;
     let count = pieces(longest, size);
-    if count == 1 || !exceeds(longest, SLIVER * height) {
+    if count == 1 || !exceeds(longest, SLIVER_ASPECT * height) {
         return smallvec![Pattern::Similar([a, b, c], count)];
     }
     let turned = [[a, b, c], [b, c, a], [c, a, b]];
@@ -74,7 +74,7 @@ fn of_triangle([a, b, c]: [DVec3; 3], size: f64) -> SmallVec<[Pattern; 4]> {
     let [tip, p, q] = turned.into_iter().min_by(|s, t| short(s).total_cmp(&short(t))).expect("three");
     let across = (q - p).length();
     let widest = pieces(across, size);
-    if widest == 1 || !exceeds(across, LEANING * height) {
+    if widest == 1 || !exceeds(across, MAX_SKEW * height) {
         return smallvec![Pattern::Rows { corners: [tip, p, q], rows: count, widest }];
     }
     // An obtuse sliver: rows along its height, from both ends of its longest edge.

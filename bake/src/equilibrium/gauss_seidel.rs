@@ -6,7 +6,7 @@ use super::system::{LocalSystem, ROUNDING};
 use equilux_formats::Rgb;
 
 /// After this many iterations without progress, a change below 1e-12 is rounding.
-const PATIENCE: usize = 10;
+const MAX_STALLED: usize = 10;
 
 /// Iterates until the changes are rounding.
 pub fn solve(system: &LocalSystem, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
@@ -19,7 +19,7 @@ pub fn solve(system: &LocalSystem, sources: &[Rgb], guess: &[Rgb]) -> Vec<Rgb> {
         } else {
             since_best += 1;
         }
-        if change <= ROUNDING || (since_best >= PATIENCE && change <= 1e-12) {
+        if change <= ROUNDING || (since_best >= MAX_STALLED && change <= 1e-12) {
             nodes.truncate(sources.len());
             return nodes;
         }

@@ -11,13 +11,13 @@ use rayon::prelude::*;
 const RESTART: usize = 40;
 
 /// The largest number of restarts. The result is then returned as it is; callers compute their own error bound.
-const RESTARTS: usize = 200;
+const MAX_RESTARTS: usize = 200;
 
 /// Elements a partial sum. Partial sums of fixed size, added in order, do not depend on the number of threads.
-const PIECE: usize = 2048;
+const PARTIAL_SUM: usize = 2048;
 
 /// If orthogonalisation leaves less than this share of a vector, it is repeated. Vectors are then orthogonal to 1e-13.
-const NEW: f64 = 1e-3;
+const REORTHOGONALISE_BELOW: f64 = 1e-3;
 
 /// Sums of squares in this range have neither overflowed nor underflowed.
 const SAFE: std::ops::Range<f64> = 1e-280..1e280;
@@ -32,7 +32,7 @@ pub fn gmres(
     tolerance: f64,
 ) {
     let mut previous = Rgb::splat(f64::INFINITY);
-    for _ in 0..RESTARTS {
+    for _ in 0..MAX_RESTARTS {
         let ax = apply(x);
         let residual: Vec<Rgb> = rhs.iter().zip(&ax).map(|(&b, &a)| b - a).collect();
         let (left, scale) = (largest(&residual), largest(x));
@@ -132,9 +132,9 @@ fn combined(shares: &[Rgb], vectors: &[Vec<Rgb>], length: usize) -> Vec<Rgb> {
 
 /// sum += Σ share_k vector_k.
 fn add_combined(sum: &mut [Rgb], shares: &[Rgb], vectors: &[Vec<Rgb>]) {
-    sum.par_chunks_mut(PIECE).enumerate().for_each(|(number, piece)| {
+    sum.par_chunks_mut(PARTIAL_SUM).enumerate().for_each(|(number, piece)| {
         for (&share, vector) in shares.iter().zip(vectors) {
-            let vector = &vector[number * PIECE..];
+            let vector = &vector[number * PARTIAL_SUM..];
             piece.iter_mut().zip(vector).for_each(|(sum, &v)| *sum += share * v);
         }
     });
@@ -152,7 +152,7 @@ fn orthogonalise(w: &mut [Rgb], basis: &[Vec<Rgb>]) -> (Vec<Rgb>, Rgb) {
         column.iter_mut().zip(&along).for_each(|(sum, &along)| *sum += along);
         left = norm(w);
         let taken = norm(&along);
-        if (0..3).all(|c| left[c] >= NEW * taken[c]) {
+        if (0..3).all(|c| left[c] >= REORTHOGONALISE_BELOW * taken[c]) {
             break;
         }
     }
@@ -162,9 +162,9 @@ fn orthogonalise(w: &mut [Rgb], basis: &[Vec<Rgb>]) -> (Vec<Rgb>, Rgb) {
 /// The products of a vector with each of several.
 fn dots(w: &[Rgb], vectors: &[Vec<Rgb>]) -> Vec<Rgb> {
     let of = |(number, piece): (usize, &[Rgb])| -> Vec<Rgb> {
-        vectors.iter().map(|vector| dot(piece, &vector[number * PIECE..])).collect()
+        vectors.iter().map(|vector| dot(piece, &vector[number * PARTIAL_SUM..])).collect()
     };
-    let pieces: Vec<Vec<Rgb>> = w.par_chunks(PIECE).enumerate().map(of).collect();
+    let pieces: Vec<Vec<Rgb>> = w.par_chunks(PARTIAL_SUM).enumerate().map(of).collect();
     (0..vectors.len()).map(|k| pieces.iter().fold(Rgb::BLACK, |sum, piece| sum + piece[k])).collect()
 }
 
@@ -174,7 +174,7 @@ fn dot(a: &[Rgb], b: &[Rgb]) -> Rgb {
 
 /// The Euclidean norm of each channel, safe from overflow: squares of 1e200 would be infinite.
 fn norm(v: &[Rgb]) -> Rgb {
-    let pieces: Vec<Rgb> = v.par_chunks(PIECE).map(|piece| dot(piece, piece)).collect();
+    let pieces: Vec<Rgb> = v.par_chunks(PARTIAL_SUM).map(|piece| dot(piece, piece)).collect();
     let squares: Rgb = pieces.into_iter().sum();
     if squares.iter().all(|square| SAFE.contains(square)) {
         return squares.map(f64::sqrt);
@@ -189,7 +189,7 @@ fn norm(v: &[Rgb]) -> Rgb {
 /// The vector over its length; a channel without length stays out of the game as zeros.
 fn normalise(v: &mut [Rgb], length: Rgb) {
     let over = |v: Rgb| Rgb::from_fn(|c| if length[c] > 0.0 { v[c] / length[c] } else { 0.0 });
-    v.par_chunks_mut(PIECE).for_each(|piece| piece.iter_mut().for_each(|v| *v = over(*v)));
+    v.par_chunks_mut(PARTIAL_SUM).for_each(|piece| piece.iter_mut().for_each(|v| *v = over(*v)));
 }
 
 /// min ‖β e₁ − H y‖ for the growing Hessenberg matrix H, by Givens rotations, channel by channel.

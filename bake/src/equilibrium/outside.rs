@@ -12,13 +12,13 @@ use equilux_formats::{BoundaryResponses, Element, Geometry, Rgb};
 
 /// Relative residual of a response. Responses accelerate the exchange and do not affect its result, so a rough solution
 /// suffices.
-const ROUGH: f64 = 1e-2;
+const RESPONSE_RESIDUAL: f64 = 1e-2;
 
 /// A response that is new by less than this share, compared with the span of those before it, is dropped.
-const NEW: f64 = 1e-3;
+const MIN_NEW_SHARE: f64 = 1e-3;
 
 /// A smaller share that a receiver sees outside its own part is rounding of its row sum.
-const CLOSED: f64 = 1e-12;
+const MIN_OPEN_SHARE: f64 = 1e-12;
 
 /// The irradiance of an unobstructed element under one light from outside.
 type OutsideLight = Box<dyn Fn(&Element) -> f64>;
@@ -36,7 +36,7 @@ pub fn boundary_responses(system: &LocalSystem, geometry: &Geometry) -> Boundary
         if sources.iter().all(|source| *source == Rgb::BLACK) {
             continue;
         }
-        let (radiosity, _) = system.solve_roughly(&sources, ROUGH);
+        let (radiosity, _) = system.solve_roughly(&sources, RESPONSE_RESIDUAL);
         if number == 0 {
             answers.returned = returned(&areas, &open, &radiosity);
         }
@@ -49,7 +49,7 @@ pub fn boundary_responses(system: &LocalSystem, geometry: &Geometry) -> Boundary
 }
 
 fn open(share: f64) -> f64 {
-    if share > CLOSED { share } else { 0.0 }
+    if share > MIN_OPEN_SHARE { share } else { 0.0 }
 }
 
 /// The seven lights.
@@ -84,7 +84,7 @@ fn orthonormal(mut vector: Vec<Rgb>, basis: &[Vec<Rgb>], areas: &[f64]) -> Optio
         }
     }
     let length = product(&vector, &vector, areas).map(f64::sqrt);
-    let is_new = |c: usize| length[c] > NEW * before[c] && length[c].is_finite();
+    let is_new = |c: usize| length[c] > MIN_NEW_SHARE * before[c] && length[c].is_finite();
     let share = Rgb::from_fn(|c| if is_new(c) { 1.0 / length[c] } else { 0.0 });
     vector.iter_mut().for_each(|v| *v = Rgb::from_fn(|c| if share[c] > 0.0 { v[c] * share[c] } else { 0.0 }));
     (share != Rgb::BLACK).then_some(vector)

@@ -5,7 +5,7 @@
 
 use super::contour;
 use crate::geometry::outline::Plane;
-use crate::geometry::polygon::{Polygon, Pyramid, Side, clip};
+use crate::geometry::polygon::{Clipped, Polygon, Pyramid, clip};
 use crate::geometry::tolerance::IN_PLANE;
 use crate::world::World;
 use equilux_formats::{Element, Face, FaceId};
@@ -49,9 +49,9 @@ pub fn visible_side(receiver: &Element, sender: &Element) -> Option<Polygon> {
         return None;
     }
     match clip(&polygon, |p| receiver.normal.dot(p)) {
-        Side::All => Some(polygon),
-        Side::None => None,
-        Side::Piece(piece) => Some(piece),
+        Clipped::All => Some(polygon),
+        Clipped::None => None,
+        Clipped::Piece(piece) => Some(piece),
     }
 }
 
@@ -70,8 +70,8 @@ pub fn hidden_pyramid(x: DVec3, occluder: &Face, of: Plane) -> Option<Pyramid> {
         return None;
     }
     match clip(&polygon, before_sender) {
-        Side::All => Some(Pyramid::over(&polygon, occluder.normal)),
-        Side::None => None,
-        Side::Piece(piece) => Some(Pyramid::over(&piece, occluder.normal)),
+        Clipped::All => Some(Pyramid::over(&polygon, occluder.normal)),
+        Clipped::None => None,
+        Clipped::Piece(piece) => Some(Pyramid::over(&piece, occluder.normal)),
     }
 }

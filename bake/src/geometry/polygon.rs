@@ -11,10 +11,10 @@ use smallvec::SmallVec;
 /// A planar convex polygon, corners in order. Up to ten corners are stored inline, more on the heap.
 pub type Polygon = SmallVec<[DVec3; 10]>;
 
-/// What lies on one side of a plane.
+/// A polygon clipped by a plane.
 #[derive(Debug)]
 #[expect(clippy::large_enum_variant, reason = "short-lived; a box would cost an allocation a cut")]
-pub enum Side {
+pub enum Clipped {
     /// The whole polygon.
     All,
     /// Nothing, or no more than an edge or a corner.
@@ -25,14 +25,14 @@ pub enum Side {
 
 /// The part of `polygon` where `distance` (an affine function of the point) is positive. Corners on the plane belong to
 /// both sides, and a polygon that only touches the plane is not cut. Only signs decide, and a cut point lies between
-/// the corners of its edge. A piece no higher than the rounding of its corners counts as an edge: [`Side::None`].
-pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
+/// the corners of its edge. A piece no higher than the rounding of its corners counts as an edge: [`Clipped::None`].
+pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Clipped {
     let distances: SmallVec<[f64; 12]> = polygon.iter().map(|&p| distance(p)).collect();
     if distances.iter().all(|&d| d >= 0.0) {
-        return if distances.iter().any(|&d| d > 0.0) { Side::All } else { Side::None };
+        return if distances.iter().any(|&d| d > 0.0) { Clipped::All } else { Clipped::None };
     }
     if distances.iter().all(|&d| d <= 0.0) {
-        return Side::None;
+        return Clipped::None;
     }
     let mut piece = Polygon::new();
     for (i, (&p, &dp)) in polygon.iter().zip(&distances).enumerate() {
@@ -45,16 +45,16 @@ pub fn clip(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> Side {
             piece.push(p + (q - p) * (dp / (dp - dq)));
         }
     }
-    if is_edge(&piece) { Side::None } else { Side::Piece(piece) }
+    if is_edge(&piece) { Clipped::None } else { Clipped::Piece(piece) }
 }
 
 /// The pieces of `polygon` on both sides of a plane: where `distance` is positive, and where it is negative. A polygon
 /// in the plane is the first.
 pub fn part(polygon: &[DVec3], distance: impl Fn(DVec3) -> f64) -> [Option<Polygon>; 2] {
     let side = |sign: f64| match clip(polygon, |p| sign * distance(p)) {
-        Side::All => Some(Polygon::from_slice(polygon)),
-        Side::None => None,
-        Side::Piece(piece) => Some(piece),
+        Clipped::All => Some(Polygon::from_slice(polygon)),
+        Clipped::None => None,
+        Clipped::Piece(piece) => Some(piece),
     };
     match [side(1.0), side(-1.0)] {
         [None, None] => [Some(Polygon::from_slice(polygon)), None],
@@ -162,9 +162,9 @@ impl Pyramid {
         let mut inside: Polygon = polygon.iter().copied().collect();
         for plane in &self.planes {
             match clip(&inside, |p| plane.dot(p)) {
-                Side::All => {}
-                Side::None => return None,
-                Side::Piece(piece) => inside = piece,
+                Clipped::All => {}
+                Clipped::None => return None,
+                Clipped::Piece(piece) => inside = piece,
             }
         }
         Some(inside)
@@ -186,17 +186,17 @@ impl Pyramid {
         let mut inside = polygon;
         for plane in &self.planes {
             match clip(&inside, |p| -plane.dot(p)) {
-                Side::None => {}
-                Side::All => {
+                Clipped::None => {}
+                Clipped::All => {
                     outside.push(inside);
                     return;
                 }
-                Side::Piece(piece) => {
+                Clipped::Piece(piece) => {
                     outside.push(piece);
                     match clip(&inside, |p| plane.dot(p)) {
-                        Side::Piece(rest) => inside = rest,
-                        Side::All => {}
-                        Side::None => return,
+                        Clipped::Piece(rest) => inside = rest,
+                        Clipped::All => {}
+                        Clipped::None => return,
                     }
                 }
             }
@@ -278,9 +278,9 @@ mod tests {
             let mut sum = 0.0;
             for sign in [1.0, -1.0] {
                 match clip(&triangle, |p| sign * height(p)) {
-                    Side::All => sum += area(&triangle),
-                    Side::None => {}
-                    Side::Piece(piece) => {
+                    Clipped::All => sum += area(&triangle),
+                    Clipped::None => {}
+                    Clipped::Piece(piece) => {
                         sum += area(&piece);
                         prop_assert!(area(&piece) > 0.0, "{piece:?}");
                         // Heights are rounded like the coordinates.
@@ -299,8 +299,8 @@ mod tests {
         let square =
             [DVec3::ZERO, DVec3::X, dvec3(1.0, 1.0, 0.0), DVec3::Y].map(|p| p + dvec3(90.0, 0.0, 90.0));
         let beyond = clip(&square, |p| p.x - (91.0 - 1e-14));
-        assert!(matches!(beyond, Side::None), "a strip of one step of f64: {beyond:?}");
-        assert!(matches!(clip(&square, |p| p.x - (91.0 - 1e-12)), Side::Piece(_)), "a strip of seventy");
+        assert!(matches!(beyond, Clipped::None), "a strip of one step of f64: {beyond:?}");
+        assert!(matches!(clip(&square, |p| p.x - (91.0 - 1e-12)), Clipped::Piece(_)), "a strip of seventy");
     }
 
     /// Columns of a grid differ by rounding; whichever point of one comes first, the hull has the four corners.

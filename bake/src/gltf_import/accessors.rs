@@ -14,7 +14,7 @@ const MOST_ELEMENTS: usize = 1 << 26;
 
 /// The components of `accessor`, element after element. Errors call them `what`.
 pub(super) fn components(document: &Document, accessor: &gltf::Accessor, what: &str) -> Result<Vec<f64>> {
-    let reader = Reader { document, what, accessor };
+    let reader = AccessorReader { document, what, accessor };
     reader.check_count()?;
     let layout = Layout {
         component: accessor.data_type(),
@@ -107,13 +107,13 @@ fn exactly<const N: usize>(bytes: &[u8]) -> [u8; N] {
     bytes.try_into().expect("a chunk has the size of its component")
 }
 
-struct Reader<'a> {
+struct AccessorReader<'a> {
     document: &'a Document,
     what: &'a str,
     accessor: &'a gltf::Accessor<'a>,
 }
 
-impl Reader<'_> {
+impl AccessorReader<'_> {
     fn error(&self, found: impl std::fmt::Display, expected: impl Into<String>) -> Error {
         let found = format!("{} in accessor {}: {found}", self.what, self.accessor.index());
         self.document.error(found, expected, "export the file again, it contradicts itself or is truncated")

@@ -9,12 +9,12 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 
 /// Changes, by name of the material.
-pub(super) type Changes = BTreeMap<String, Change>;
+pub(super) type Changes = BTreeMap<String, MaterialChange>;
 
 /// Changes of one material; missing properties stay.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase", deny_unknown_fields)]
-pub(super) struct Change {
+pub(super) struct MaterialChange {
     base_color_factor: Option<[f64; 4]>,
     emissive_factor: Option<[f64; 3]>,
     emissive_strength: Option<f64>,
@@ -23,10 +23,10 @@ pub(super) struct Change {
 /// Parses the changes in `value` of the extras; none if they are invalid.
 pub(super) fn changes(value: &Value) -> Option<Changes> {
     let changes: Changes = serde_json::from_value(value.clone()).ok()?;
-    changes.values().all(Change::is_possible).then_some(changes)
+    changes.values().all(MaterialChange::is_possible).then_some(changes)
 }
 
-impl Change {
+impl MaterialChange {
     fn is_possible(&self) -> bool {
         let light = |value: &f64| value.is_finite() && *value >= 0.0;
         self.base_color_factor.iter().flatten().all(|rho| (0.0..=1.0).contains(rho))

@@ -17,12 +17,12 @@ pub struct Obstruction<'a, C: Fn(u32) -> bool> {
     pub(super) sender: &'a SeenPolygon,
     /// Whether a face, by its number in the world, lies in the sender's plane.
     coplanar: C,
-    place: Place,
+    place: MeshPosition,
 }
 
 /// The position of the mesh relative to the sender.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Place {
+enum MeshPosition {
     /// Where it can hide nothing.
     Aside,
     /// All of it between the receiver and the sender's plane.
@@ -41,7 +41,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     /// How much of the sender the mesh hides. If it hides a part, `arcs` receives the arcs that bound it.
     pub(super) fn outline(&self, arcs: &mut Vec<Arc>) -> Hides {
         arcs.clear();
-        if self.place == Place::Aside {
+        if self.place == MeshPosition::Aside {
             return Hides::Nothing;
         }
         self.find_arcs(arcs);
@@ -62,7 +62,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     fn find_arcs(&self, arcs: &mut Vec<Arc>) {
         let sides = self.sender.sides();
         self.clip(&self.seen.outer, &sides, arcs);
-        if self.place == Place::Before {
+        if self.place == MeshPosition::Before {
             return;
         }
         let mut others = Vec::new();
@@ -85,7 +85,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
     }
 
     fn before(&self, arc: Arc) -> Option<Arc> {
-        if self.place == Place::Before {
+        if self.place == MeshPosition::Before {
             return Some(arc);
         }
         let hides = !(self.coplanar)(self.seen.mesh.faces[arc.face as usize]);
@@ -144,7 +144,7 @@ impl<'a, C: Fn(u32) -> bool> Obstruction<'a, C> {
 
     fn hides(&self, sight: &Sight) -> bool {
         self.seen.covers(sight, |face| {
-            self.place == Place::Before
+            self.place == MeshPosition::Before
                 || !(self.coplanar)(self.seen.mesh.faces[face]) && self.is_before(face, sight)
         })
     }
@@ -172,17 +172,17 @@ fn inside(arc: Arc, sides: &[DVec3]) -> Option<Arc> {
     sides.iter().try_fold(arc, |rest, &side| rest.clip(side))
 }
 
-fn place(seen: &SeenMesh, sender: &SeenPolygon) -> Place {
+fn place(seen: &SeenMesh, sender: &SeenPolygon) -> MeshPosition {
     if !seen.span.meets(&sender.span) {
-        return Place::Aside;
+        return MeshPosition::Aside;
     }
     let (centre, half) = (seen.mesh.bounds.centre(), seen.mesh.bounds.size() / 2.0);
     let (lowest, highest) = sender.heights_of_box(centre - seen.point, half);
     if highest <= IN_PLANE * sender.reach {
-        Place::Aside
+        MeshPosition::Aside
     } else if lowest > APART * half.length() {
-        Place::Before
+        MeshPosition::Before
     } else {
-        Place::Across
+        MeshPosition::Across
     }
 }

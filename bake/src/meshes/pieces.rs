@@ -6,7 +6,7 @@
 
 use super::arc::Arc;
 use super::obstruction::Obstruction;
-use crate::geometry::polygon::{Hides, Polygon, Side, clip};
+use crate::geometry::polygon::{Clipped, Hides, Polygon, clip};
 use crate::geometry::tolerance::SHORTEST_ARC;
 use glam::DVec3;
 
@@ -71,9 +71,9 @@ fn take_longest(arcs: &mut Vec<Arc>) -> Option<Arc> {
 /// The part on the positive side of a plane.
 fn half(polygon: &Polygon, arcs: &[Arc], plane: DVec3) -> Option<Half> {
     let piece = match clip(polygon, |p| plane.dot(p)) {
-        Side::All => polygon.clone(),
-        Side::None => return None,
-        Side::Piece(piece) => piece,
+        Clipped::All => polygon.clone(),
+        Clipped::None => return None,
+        Clipped::Piece(piece) => piece,
     };
     Some((piece, arcs.iter().filter_map(|arc| arc.clip(plane)).collect()))
 }

@@ -50,7 +50,7 @@ fn look_up<T: Stored>(store: &Store, name: &str, manifest: &Manifest) -> std::re
 }
 
 /// Interval between checks whether another process is done.
-const PATIENCE: Duration = Duration::from_millis(50);
+const POLL_INTERVAL: Duration = Duration::from_millis(50);
 
 /// A value that was not in the cache.
 #[derive(Debug)]
@@ -120,7 +120,7 @@ fn wait_for_turn(store: &Store, name: &str, manifest: &Manifest, monitor: &Monit
             return Some(turn);
         }
         monitor.begin(format!("another process computes {name}: waiting for it"), 0, 0.0);
-        std::thread::sleep(PATIENCE);
+        std::thread::sleep(POLL_INTERVAL);
     }
     None
 }

@@ -219,7 +219,7 @@ fn divided(
     scene: &Scene,
     divide: impl FnOnce(Geometry) -> Vec<Geometry>,
 ) -> Prepared {
-    let Merged { whole, materials, textured } = merged(authored, scene);
+    let MergedScene { whole, materials, textured } = merged(authored, scene);
     let (mut parts, mut instances) = (Vec::new(), Vec::new());
     for (number, cell) in divide(whole).into_iter().enumerate() {
         let name = format!("cell {}", number + 1);
@@ -248,13 +248,13 @@ fn divided(
 }
 
 /// All instances in scene coordinates, with one list of materials, as each instance has them.
-struct Merged {
+struct MergedScene {
     whole: Geometry,
     materials: Vec<Material>,
     textured: Vec<TexturedTriangle>,
 }
 
-fn merged(prepared: &Prepared, scene: &Scene) -> Merged {
+fn merged(prepared: &Prepared, scene: &Scene) -> MergedScene {
     let part = |instance: &Instance| &prepared.parts[instance.part.index()];
     let world = World::new(prepared.instances.iter().map(|i| (&part(i).geometry, i.placement)));
     let mut materials: Vec<Material> = Vec::new();
@@ -269,7 +269,7 @@ fn merged(prepared: &Prepared, scene: &Scene) -> Merged {
             TexturedTriangle { material, ..triangle.placed(instance.placement) }
         }));
     }
-    Merged { whole: clusters::geometry(elements, world.faces), materials, textured }
+    MergedScene { whole: clusters::geometry(elements, world.faces), materials, textured }
 }
 
 fn number_of(materials: &mut Vec<Material>, material: Material) -> MaterialId {

@@ -8,7 +8,7 @@ mod sums;
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::box_tree::BoxTree;
-use crate::geometry::polygon::{Polygon, Side, clip};
+use crate::geometry::polygon::{Clipped, Polygon, clip};
 use crate::geometry::tolerance::{BENT, JOINED};
 use equilux_formats::{Element, Geometry, Material, MaterialId, Rgb, Texture, TexturedTriangle, Tints};
 use glam::{DVec2, DVec3};
@@ -152,9 +152,9 @@ impl<'a> Sheet<'a> {
             let (from, to) = (self.triangle.corners[side], self.triangle.corners[(side + 1) % 3]);
             let inwards = self.normal.cross(to - from);
             match clip(&rest, |p| inwards.dot(p - from)) {
-                Side::All => {}
-                Side::None => return None,
-                Side::Piece(piece) => rest = piece,
+                Clipped::All => {}
+                Clipped::None => return None,
+                Clipped::Piece(piece) => rest = piece,
             }
         }
         Some(rest)

@@ -3,7 +3,7 @@
 //! All corners are in the coordinates of the surface's part.
 
 use crate::geometry::aabb::Aabb;
-use crate::geometry::polygon::{Polygon, Side, clip, quads_and_triangles};
+use crate::geometry::polygon::{Clipped, Polygon, clip, quads_and_triangles};
 use equilux_formats::{Corners, Part, Surface};
 use glam::{DVec2, DVec3};
 
@@ -64,9 +64,9 @@ impl Facing {
         let mut rest = Polygon::from_slice(polygon);
         for edge in self.edges() {
             match clip(&rest, |p| edge(p) - depth) {
-                Side::All => {}
-                Side::None => return Polygon::new(),
-                Side::Piece(piece) => rest = piece,
+                Clipped::All => {}
+                Clipped::None => return Polygon::new(),
+                Clipped::Piece(piece) => rest = piece,
             }
         }
         rest
@@ -105,11 +105,11 @@ impl Cell {
         let (front, back) = (self.front, self.back);
         let (mut cells, mut rest) = (Vec::new(), self.corners);
         for edge in cover.edges() {
-            if let Side::Piece(corners) = clip(&rest, |p| -edge(p)) {
+            if let Clipped::Piece(corners) = clip(&rest, |p| -edge(p)) {
                 cells.push(Self { corners, front, back });
                 match clip(&rest, edge) {
-                    Side::Piece(inside) => rest = inside,
-                    Side::All | Side::None => unreachable!("what is cut lies on both sides"),
+                    Clipped::Piece(inside) => rest = inside,
+                    Clipped::All | Clipped::None => unreachable!("what is cut lies on both sides"),
                 }
             }
         }

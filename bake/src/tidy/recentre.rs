@@ -8,7 +8,7 @@ use crate::geometry::aabb::Aabb;
 use equilux_formats::Scene;
 
 /// A scene is moved if it is further away than about this multiple of its extent. A power of two.
-const FAR: f64 = 16.0;
+const FAR_EXTENTS: f64 = 16.0;
 
 /// Moves a scene far from its file's origin close to its own, which is stored in `origin`.
 pub(super) fn recentre(scene: &mut Scene) {
@@ -19,7 +19,7 @@ pub(super) fn recentre(scene: &mut Scene) {
         return;
     }
     // Whole multiples of a power of two are subtracted without rounding.
-    let step = 2f64.powi((FAR * extent).log2().ceil() as i32);
+    let step = 2f64.powi((FAR_EXTENTS * extent).log2().ceil() as i32);
     let origin = (around.centre() / step).round() * step;
     scene.instances.iter_mut().for_each(|instance| instance.placement.translation -= origin);
     scene.lights.iter_mut().for_each(|light| light.position -= origin);

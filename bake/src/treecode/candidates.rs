@@ -38,11 +38,11 @@ pub enum Verdict {
 }
 
 /// Boxes larger than this share of the receivers or sender are opened; opening smaller ones would only lengthen the list.
-const OPEN_ABOVE: f64 = 0.5;
+const MIN_OPENED_RATIO: f64 = 0.5;
 
 /// Up to this many faces of a mesh are tested one by one, which detects that one of them hides everything; more occlude
 /// as a mesh.
-const FEW: usize = 8;
+const MAX_SINGLE_FACES: usize = 8;
 
 impl<'a> Candidates<'a> {
     /// The list of all occluders.
@@ -73,7 +73,7 @@ impl<'a> Candidates<'a> {
     /// Narrows `list` to what can stand between viewers and sender.
     pub fn narrow(&mut self, list: Range<usize>, viewers: &Viewers, sender: &Sender) -> Verdict {
         let size = viewers.diameter.max(sender.bounds.diagonal());
-        self.filter(list, viewers, sender, OPEN_ABOVE * size)
+        self.filter(list, viewers, sender, MIN_OPENED_RATIO * size)
     }
 
     /// Like [`Self::narrow`], down to single occluders.
@@ -210,8 +210,8 @@ impl<'a> Between<'a> {
         self.shaft.misses_box(&occluder.bounds) || self.shaft.misses(&occluder.corners)
     }
 
-    /// The faces of a mesh that may stand in between; none if there are more than [`FEW`].
-    fn faces_of(&self, Together { tree, first, .. }: &Together) -> Option<SmallVec<[u32; FEW]>> {
+    /// The faces of a mesh that may stand in between; none if there are more than [`MAX_SINGLE_FACES`].
+    fn faces_of(&self, Together { tree, first, .. }: &Together) -> Option<SmallVec<[u32; MAX_SINGLE_FACES]>> {
         let mut faces = SmallVec::new();
         let mut open: SmallVec<[usize; 32]> = tree.root().into_iter().collect();
         while let Some(index) = open.pop() {
@@ -226,7 +226,7 @@ impl<'a> Between<'a> {
                         if self.is_aside(occluder) {
                             continue;
                         }
-                        if faces.len() == FEW {
+                        if faces.len() == MAX_SINGLE_FACES {
                             return None;
                         }
                         faces.push(occluder);

@@ -34,7 +34,7 @@ pub struct BlockRows {
 }
 
 /// A frontier is narrowed when the size of the receivers has shrunk to this share.
-const SMALLER: f64 = 0.7;
+const NARROWING_RATIO: f64 = 0.7;
 
 impl<'a> Descent<'a> {
     /// All rows.
@@ -55,7 +55,7 @@ impl<'a> Descent<'a> {
         let Request { world, receivers, .. } = *self.request;
         let viewers = Viewers::new(world, &receivers.elements(world)[group.elements.clone()]);
         let narrowed =
-            (viewers.diameter <= SMALLER * size).then(|| frontier.narrowed(self.request, &viewers));
+            (viewers.diameter <= NARROWING_RATIO * size).then(|| frontier.narrowed(self.request, &viewers));
         let (frontier, size) = match &narrowed {
             Some(narrowed) => (narrowed, viewers.diameter),
             None => (frontier, size),

@@ -7,14 +7,14 @@
 
 use super::candidates::Entry;
 use super::pieces::{Pieces, Scissors};
-use super::pyramids::{Lies, OccluderPyramids, Planes, Pyramids, REST, lies, normal_of};
+use super::pyramids::{EdgePlanes, LAST_BIT, Lies, OccluderPyramids, Pyramids, lies, normal_of};
 use super::receivers::Receivers;
 use super::seen_meshes::{MeshOccluders, SeenMeshes};
 use crate::form_factor::contour;
 use crate::form_factor::edges::Edges;
 use crate::form_factor::wide::{LANES, Lane, STEEP, Vectors, contours, squared, towards, vectorised};
 use crate::geometry::outline::Outline;
-use crate::geometry::polygon::{Polygon, Side, clip};
+use crate::geometry::polygon::{Clipped, Polygon, clip};
 use crate::geometry::tolerance::IN_PLANE;
 use crate::world::occluders::Shape;
 use crate::world::{Sender, World};
@@ -58,12 +58,12 @@ struct Chunk {
     /// Smaller distances count as zero.
     slack: Lane,
     /// The pyramids that cut the sender, and by which planes.
-    cuts: [Vec<Cut>; LANES],
+    cuts: [Vec<PyramidCut>; LANES],
 }
 
 /// A pyramid (by its place in the list) that cuts the sender, and by which of its planes.
 #[derive(Clone, Copy)]
-struct Cut {
+struct PyramidCut {
     before: u32,
     planes: u64,
 }
@@ -96,9 +96,9 @@ impl<'a> Evaluator<'a> {
         let normal = receivers.points.normal();
         let cut = clip(&sender.polygon, |p| normal.dot(p - origin));
         let polygon = match &cut {
-            Side::All => &sender.polygon,
-            Side::None => return false,
-            Side::Piece(piece) => piece,
+            Clipped::All => &sender.polygon,
+            Clipped::None => return false,
+            Clipped::Piece(piece) => piece,
         };
         self.find_before(receivers, sender, occluders);
         let Self { whole, pieces, meshes, before, chunk, clipper, edges, .. } = self;
@@ -109,7 +109,7 @@ impl<'a> Evaluator<'a> {
                 Before::Whole(pyramids) => whole.planes(pyramids, number),
                 Before::Piece(pyramids) => pieces.planes(pyramids, number),
             };
-            let planes: SmallVec<[&[Planes]; 16]> = before.iter().map(planes_of).collect();
+            let planes: SmallVec<[&[EdgePlanes]; 16]> = before.iter().map(planes_of).collect();
             vectorised(
                 #[inline(always)]
                 || chunk.look(points, polygon, normal, side.normal, &planes),
@@ -174,9 +174,9 @@ impl<'a> Evaluator<'a> {
                 continue;
             } else {
                 match clip(&occluder.corners, height) {
-                    Side::All => outline.clone(),
-                    Side::None => continue,
-                    Side::Piece(piece) => Outline::of_face(&piece, outline.sides[0].normal),
+                    Clipped::All => outline.clone(),
+                    Clipped::None => continue,
+                    Clipped::Piece(piece) => Outline::of_face(&piece, outline.sides[0].normal),
                 }
             };
             self.before.push(Before::Piece(self.pieces.add(&piece, lanes)));
@@ -193,7 +193,7 @@ impl Chunk {
         polygon: &[DVec3],
         normal: DVec3,
         facing: DVec3,
-        pyramids: &[&[Planes]],
+        pyramids: &[&[EdgePlanes]],
     ) {
         self.corners.clear();
         let mut reach2 = [0.0; LANES];
@@ -221,7 +221,7 @@ impl Chunk {
             }
             for lane in 0..LANES {
                 if aside[lane] > 0.0 && cuts[lane] != 0 {
-                    self.cuts[lane].push(Cut { before: number as u32, planes: cuts[lane] });
+                    self.cuts[lane].push(PyramidCut { before: number as u32, planes: cuts[lane] });
                 }
             }
             if dark == [true; LANES] {
@@ -246,7 +246,7 @@ impl Chunk {
 /// The view of one sender from one receiver.
 struct ReceiverView<'a> {
     chunk: &'a mut Chunk,
-    planes: &'a [&'a [Planes]],
+    planes: &'a [&'a [EdgePlanes]],
     occluders: MeshOccluders<'a>,
     lane: usize,
     normal: DVec3,
@@ -281,7 +281,7 @@ impl Clipper {
             values[place] = contour::form_factor(&polygon, normal);
         }
         // The last bit may stand for planes that do not exist for this receiver.
-        let cutting = |cut: &Cut| {
+        let cutting = |cut: &PyramidCut| {
             let planes = planes[cut.before as usize];
             let normals = bits(cut.planes, planes.len()).map(move |number| normal_of(&planes[number], lane));
             normals.filter(|&normal| normal != DVec3::ZERO)
@@ -318,8 +318,8 @@ impl Clipper {
 
 /// The numbers of the bits that are set, of `count` planes; the last bit stands for all from there on.
 fn bits(mut set: u64, count: usize) -> impl Iterator<Item = usize> + Clone {
-    let rest = if set >> REST == 1 { REST..count } else { 0..0 };
-    set &= !(1 << REST);
+    let rest = if set >> LAST_BIT == 1 { LAST_BIT..count } else { 0..0 };
+    set &= !(1 << LAST_BIT);
     let low = std::iter::from_fn(move || {
         let number = set.trailing_zeros() as usize;
         set &= set.wrapping_sub(1);

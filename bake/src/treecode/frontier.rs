@@ -13,7 +13,7 @@ pub struct Frontier<'a> {
 }
 
 /// A frontier does not open senders smaller than this share of the receivers' size, or of the distance to them.
-const CLOSED: f64 = 0.5;
+const MAX_CLOSED_RATIO: f64 = 0.5;
 
 impl<'a> Frontier<'a> {
     /// All senders, each with all occluders.
@@ -75,5 +75,5 @@ fn is_untouched(request: &Request, viewers: &Viewers, node: u32) -> bool {
 
 fn stays_closed(sender: &Sender, viewers: &Viewers) -> bool {
     let size = sender.bounds.diagonal();
-    size <= CLOSED * viewers.diameter.max(viewers.distance_to(sender))
+    size <= MAX_CLOSED_RATIO * viewers.diameter.max(viewers.distance_to(sender))
 }

@@ -57,9 +57,9 @@ impl Scissors {
         self.inside.extend_from_slice(polygon);
         for plane in planes {
             match self.place(plane, slack) {
-                Place::Inside => {}
-                Place::Outside => return outside.push(&self.inside),
-                Place::Across => {
+                PlaneSide::Inside => {}
+                PlaneSide::Outside => return outside.push(&self.inside),
+                PlaneSide::Across => {
                     outside.points.reserve(self.inside.len() + 1);
                     self.half(-1.0, |p| outside.points.push(p));
                     outside.ends.push(outside.points.len());
@@ -80,16 +80,16 @@ impl Scissors {
         self.inside.extend_from_slice(polygon);
         for plane in planes {
             match self.place(plane, slack) {
-                Place::Inside => {}
-                Place::Outside => return &[],
-                Place::Across => self.keep(),
+                PlaneSide::Inside => {}
+                PlaneSide::Outside => return &[],
+                PlaneSide::Across => self.keep(),
             }
         }
         &self.inside
     }
 
     /// The side of one more plane on which the inside polygon lies.
-    fn place(&mut self, plane: DVec3, slack: f64) -> Place {
+    fn place(&mut self, plane: DVec3, slack: f64) -> PlaneSide {
         self.distances.clear();
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
         for p in &self.inside {
@@ -99,11 +99,11 @@ impl Scissors {
             self.distances.push(distance);
         }
         if low >= -slack {
-            Place::Inside
+            PlaneSide::Inside
         } else if high <= slack {
-            Place::Outside
+            PlaneSide::Outside
         } else {
-            Place::Across
+            PlaneSide::Across
         }
     }
 
@@ -135,7 +135,7 @@ impl Scissors {
 }
 
 /// The side of a plane on which a polygon lies.
-enum Place {
+enum PlaneSide {
     Inside,
     Outside,
     Across,

@@ -9,12 +9,12 @@ use std::ops::Range;
 
 /// The planes of one edge, one a lane: unit normal inwards, and an offset added to distances. An edge that is no
 /// silhouette for a lane has a zero normal and the offset ∞, which restricts nothing.
-pub type Planes = [Lane; 4];
+pub type EdgePlanes = [Lane; 4];
 
 /// The pyramids of many occluders.
 #[derive(Default)]
 pub struct Pyramids {
-    planes: Vec<Planes>,
+    planes: Vec<EdgePlanes>,
     /// The end of the planes of each chunk of receivers, for one occluder after the other.
     ends: Vec<usize>,
 }
@@ -35,7 +35,7 @@ pub struct Lies {
 }
 
 /// The bit that represents all planes from this one on.
-pub const REST: usize = 63;
+pub const LAST_BIT: usize = 63;
 
 impl Pyramids {
     /// Removes all pyramids.
@@ -60,7 +60,7 @@ impl Pyramids {
     }
 
     /// The planes of one chunk of receivers.
-    pub fn planes(&self, pyramids: OccluderPyramids, chunk: usize) -> &[Planes] {
+    pub fn planes(&self, pyramids: OccluderPyramids, chunk: usize) -> &[EdgePlanes] {
         &self.planes[self.range(pyramids.first as usize + chunk)]
     }
 
@@ -71,12 +71,12 @@ impl Pyramids {
 }
 
 /// The normal of one lane's plane.
-pub fn normal_of(planes: &Planes, lane: usize) -> DVec3 {
+pub fn normal_of(planes: &EdgePlanes, lane: usize) -> DVec3 {
     DVec3::new(planes[0][lane], planes[1][lane], planes[2][lane])
 }
 
 #[inline(always)]
-fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
+fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<EdgePlanes>) {
     let mut looks: smallvec::SmallVec<[Lane; 16]> = smallvec::SmallVec::new();
     for side in &outline.sides {
         let to = towards(side.point, points);
@@ -133,7 +133,7 @@ fn add_planes(outline: &Outline, points: &Vectors, planes: &mut Vec<Planes>) {
 /// Corners within `slack` of a plane count as in it, so that a sender that shares an edge with the silhouette is hidden
 /// either entirely or not at all.
 #[inline(always)]
-pub fn lies(planes: &[Planes], corners: &[Vectors], slack: &Lane) -> Lies {
+pub fn lies(planes: &[EdgePlanes], corners: &[Vectors], slack: &Lane) -> Lies {
     let mut lies = Lies { aside: [f64::INFINITY; LANES], cuts: [0; LANES] };
     for (number, [x, y, z, offset]) in planes.iter().enumerate() {
         let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
@@ -147,7 +147,7 @@ pub fn lies(planes: &[Planes], corners: &[Vectors], slack: &Lane) -> Lies {
                 high[lane] = if distance > high[lane] { distance } else { high[lane] };
             }
         }
-        let bit = 1u64 << number.min(REST);
+        let bit = 1u64 << number.min(LAST_BIT);
         for lane in 0..LANES {
             let above = high[lane] - slack[lane];
             lies.aside[lane] = if above < lies.aside[lane] { above } else { lies.aside[lane] };

@@ -8,7 +8,7 @@ use equilux_formats::Element;
 use std::ops::Range;
 
 /// The largest number of receivers that share a search: enough to share its cost, few enough to share its result.
-const TOGETHER: usize = 32;
+const MAX_GROUP_RECEIVERS: usize = 32;
 
 /// A node of the receivers' hierarchy.
 pub struct Group {
@@ -35,7 +35,7 @@ pub fn receiver_groups(world: &World, audience: Audience) -> Option<Group> {
 fn halved(points: &[Element], range: Range<usize>) -> Group {
     let own = &points[range.clone()];
     let is_flat = own.iter().all(|e| e.face == own[0].face && e.normal.dot(own[0].normal) > 0.0);
-    let halves = (!is_flat || own.len() > TOGETHER).then(|| {
+    let halves = (!is_flat || own.len() > MAX_GROUP_RECEIVERS).then(|| {
         let middle = range.start + own.len() / 2;
         Box::new([halved(points, range.start..middle), halved(points, middle..range.end)])
     });
@@ -52,7 +52,7 @@ fn group(world: &World, node: usize, next: &mut usize) -> Group {
     };
     let halves = [group(world, left as usize, next), group(world, right as usize, next)];
     let elements = start..*next;
-    let is_cluster = world.nodes[node].side.is_some() && elements.len() <= TOGETHER;
+    let is_cluster = world.nodes[node].side.is_some() && elements.len() <= MAX_GROUP_RECEIVERS;
     Group { elements, halves: (!is_cluster).then(|| Box::new(halves)) }
 }
 

@@ -13,10 +13,10 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 /// A row whose sum lacks less than this to one is complete; the rest bounds the form factors of all remaining senders.
-const COMPLETE: f64 = 1e-12;
+const ROW_COMPLETE: f64 = 1e-12;
 
 /// The same for blocks with entries for clusters.
-const NEARLY_COMPLETE: f64 = MISSED / 10.0;
+const CLUSTERED_ROW_COMPLETE: f64 = MISSED / 10.0;
 
 /// Factor on the opening for unoccluded clusters, measured: all entries then contribute equally to the error in
 /// furnished rooms.
@@ -133,7 +133,8 @@ impl<'a> Search<'a> {
             let lost = self.has_lost(node);
             self.open(Open { distance: 0.0, node, candidates, levels: 0, tried: f64::INFINITY, lost });
         }
-        let enough = if self.request.resolution.opening == 0.0 { COMPLETE } else { NEARLY_COMPLETE };
+        let enough =
+            if self.request.resolution.opening == 0.0 { ROW_COMPLETE } else { CLUSTERED_ROW_COMPLETE };
         while let Some(next) = self.queue.pop() {
             if self.missing.iter().all(|&missing| missing <= enough) {
                 break;

@@ -19,7 +19,7 @@ pub struct World {
     pub elements: Vec<Element>,
     /// All faces, which block light.
     pub faces: Vec<Face>,
-    planes: Planes,
+    planes: FacePlanes,
     /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
     pub nodes: Vec<Sender>,
     /// The occluders, in a spatial index.
@@ -31,7 +31,7 @@ pub struct World {
 
 /// The planes that faces lie in, by number, and the instances they belong to.
 #[derive(Debug)]
-struct Planes {
+struct FacePlanes {
     in_scene: Vec<u32>,
     in_part: Vec<u32>,
     instance: Vec<u32>,
@@ -95,7 +95,7 @@ impl World {
                 root: geometry.clusters.root().map(|root| first_node + root),
             });
         }
-        let planes = Planes { in_scene: planes::group(&faces), in_part, instance };
+        let planes = FacePlanes { in_scene: planes::group(&faces), in_part, instance };
         let occluders = Occluders::new(&faces, &lit_behind(&elements, &faces));
         let parents = parents(&nodes);
         Self { elements, faces, planes, nodes, occluders, instances, parents }
@@ -120,7 +120,7 @@ impl World {
         let first = self.faces.len() as u32;
         self.faces.extend_from_slice(&geometry.faces);
         // Each face has a plane of its own: nothing lies in it.
-        let Planes { in_scene, in_part, instance } = &mut self.planes;
+        let FacePlanes { in_scene, in_part, instance } = &mut self.planes;
         let past = in_scene.iter().max().map_or(0, |last| last + 1);
         in_scene.extend((0..).take(geometry.faces.len()).map(|n| past + n));
         in_part.extend((0..).take(geometry.faces.len()));
@@ -134,7 +134,7 @@ impl World {
     /// Whether two faces lie in one plane, so that neither lights nor hides the other. Within an instance this is
     /// decided in the part's own coordinates, so that it is the same in every scene.
     pub fn coplanar(&self, a: FaceId, b: FaceId) -> bool {
-        let Planes { in_scene, in_part, instance } = &self.planes;
+        let FacePlanes { in_scene, in_part, instance } = &self.planes;
         let (a, b) = (a.index(), b.index());
         if instance[a] == instance[b] { in_part[a] == in_part[b] } else { in_scene[a] == in_scene[b] }
     }

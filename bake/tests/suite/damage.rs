@@ -1,4 +1,4 @@
-//! Damaged, truncated and misplaced files are refused, by name.
+//! Damaged, truncated and misplaced files are refused with an error that names them.
 
 use crate::gltf::{Folder, Gltf, container};
 use crate::refusals::refused;

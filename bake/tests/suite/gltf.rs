@@ -1,4 +1,4 @@
-//! A writer of small glTF files, and what a test needs to read them.
+//! A writer of small glTF files, and helpers to read them.
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
@@ -19,7 +19,7 @@ pub const F32: u32 = 5126;
 pub const SQUARE: [[f32; 3]; 4] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
 pub const HALVES: [u32; 6] = [0, 1, 2, 0, 2, 3];
 
-/// A glTF file in the making.
+/// A glTF file under construction.
 pub struct Gltf {
     pub json: Value,
     pub bytes: Vec<u8>,

@@ -1,4 +1,4 @@
-//! Where nodes and their transforms place surfaces, and which nodes are parts.
+//! Placement of surfaces by nodes and transforms, and the choice of nodes that are parts.
 
 use crate::gltf::{Gltf, HALVES, SQUARE, import, placed_corners, square};
 use glam::{DAffine3, DMat3, DVec3};

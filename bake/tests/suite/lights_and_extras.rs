@@ -1,4 +1,4 @@
-//! Lights, cameras, and what authors ask for in extras.
+//! Lights, cameras, and settings in extras.
 
 use crate::gltf::{Folder, Gltf, import, noted};
 use equilux_bake::gltf_import::import_scene;

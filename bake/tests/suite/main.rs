@@ -1,6 +1,6 @@
-//! The importer's contract, on small files written here: what each feature of glTF becomes, what is left out with a
-//! note, and what is refused; and what meshes hide. Coordinates are small dyadic numbers, so equality is exact unless a
-//! tolerance says why not.
+//! Tests of the importer with small generated files: conversion of each feature of glTF, notes about ignored features,
+//! and refusals; and occlusion by meshes. Coordinates are small dyadic numbers, so equality is exact unless a tolerance
+//! is stated with its reason.
 
 mod accessors;
 mod damage;

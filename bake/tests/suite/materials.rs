@@ -1,4 +1,4 @@
-//! What materials become, and what radiosity has no use for.
+//! Conversion of materials, and notes about unused properties.
 
 use crate::gltf::{Gltf, SQUARE, import, noted};
 use equilux_formats::Rgb;

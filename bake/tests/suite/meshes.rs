@@ -1,4 +1,4 @@
-//! What a mesh hides by its silhouette, against clipping by each of its faces, and against the light that must arrive.
+//! Occlusion by mesh silhouettes, compared with clipping by each face, and with the row sums of closed scenes.
 
 #[path = "../../../tests/src/curved.rs"]
 mod curved;
@@ -75,7 +75,7 @@ impl Scene {
         pieces.iter().map(|piece| contour::form_factor(piece, receiver.normal)).sum()
     }
 
-    /// Every entry of about `rows` rows is what clipping by every face makes it.
+    /// Every entry of about `rows` rows equals the one from clipping by every face.
     ///
     /// Both ways are exact; they add up different pieces, and rounding differs by as many units in the last place as
     /// there are pieces.
@@ -280,7 +280,7 @@ fn a_hollow_torus_is_a_room_of_its_own() {
 
 #[test]
 fn nothing_is_seen_through_a_mesh_from_within() {
-    // The receivers of the inner sphere are inside of the outer one's solid, and its fronts look away from them.
+    // The receivers of the inner sphere are inside of the outer one's solid, and its fronts face away from them.
     let scene = Scene::new(
         &[room(1.0)],
         &[solid(&sphere(0.5, 1), DAffine3::IDENTITY), solid(&sphere(0.2, 1), DAffine3::IDENTITY)],

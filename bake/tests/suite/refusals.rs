@@ -1,4 +1,4 @@
-//! Contradictory files are refused, by the name of what is wrong.
+//! Inconsistent files are refused with an error that names the faulty object.
 
 use crate::gltf::{F32, Folder, Gltf, HALVES, SQUARE, U8, U32};
 use equilux_bake::gltf_import::import_scene;
@@ -71,7 +71,7 @@ fn sparse(index: u8) -> Gltf {
     gltf
 }
 
-/// A few bytes that state to be 2^60 vertices.
+/// A few bytes that claim to be 2^60 vertices.
 fn endless() -> Gltf {
     let mut endless = Gltf::with_square();
     endless.json["accessors"][0] = json!({

@@ -1,4 +1,4 @@
-//! What files promise: what comes back is what was put in, to the last bit, or a sentence that says why not.
+//! Files round-trip bit for bit, or reading fails with a reason.
 
 use crate::samples::{coupling, folder, light, manifest, part, read, read_bytes, written};
 use equilux_formats::{
@@ -9,11 +9,11 @@ use proptest::prelude::*;
 use std::fmt::Debug;
 use std::path::Path;
 
-/// Every harm that one byte can do to the file of `value` is found out.
+/// Every change of one byte in the file of `value` is detected.
 fn damage_is_found<T: Stored + Debug>(value: &T) {
     let folder = folder();
     let (path, bytes) = written(&folder, value);
-    // As text, for −0 and 0 are equal but not the same.
+    // As text, because −0 and 0 compare equal.
     assert_eq!(format!("{:?}", read::<T>(&path).unwrap()), format!("{value:?}"));
 
     for position in 0..bytes.len() {
@@ -72,7 +72,7 @@ struct Entry {
     checksum: [u8; 32],
 }
 
-/// A coupling file of one array, put together as FORMAT.md says and by none of the library's code.
+/// A coupling file of one array, composed as FORMAT.md describes, without the library's code.
 fn by_hand(count: u64, length: impl Fn(u64) -> u64) -> Vec<u8> {
     let numbers: Vec<u8> = [1.5f64, -2.0, 0.0].iter().flat_map(|number| number.to_le_bytes()).collect();
     let frame = zstd::encode_all(&numbers[..], 1).unwrap();

@@ -1,4 +1,4 @@
-//! What the cache finds again, and under which names.
+//! Cache lookups by key and by name.
 
 use crate::samples::{coupling, folder, light, manifest};
 use equilux_formats::{BakedGeometry, BakedLight, Kind, Lookup, Manifest, Rows, Store};

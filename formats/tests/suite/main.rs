@@ -1,4 +1,4 @@
-//! What files and the cache promise.
+//! Tests of files and the cache.
 
 mod container;
 mod keeping;

@@ -1,4 +1,4 @@
-//! Keys change exactly when there is a reason, and the reason is named.
+//! Keys change exactly when the manifest gives a reason.
 
 use crate::samples::manifest;
 use equilux_formats::{Content, Manifest};

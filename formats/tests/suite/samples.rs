@@ -1,4 +1,4 @@
-//! Values of every kind of file, and what a test needs to write and read them.
+//! Sample values of every kind of file, and helpers to write and read them.
 
 use equilux_formats::{
     BakedGeometry, BakedLight, BoundaryResponses, ClusterTree, Content, Corners, Element, Error, Face,

@@ -1,5 +1,4 @@
-//! The cache folder under rough treatment: processes that are killed, processes that share it, files that are damaged,
-//! and too little room.
+//! Robustness of the cache folder: killed processes, concurrent processes, damaged files, and limited size.
 
 use equilux_formats::{
     BakedLight, BoundaryResponses, Content, Evicted, Key, Kind, LocalEquilibrium, LocalSolver, Lookup,
@@ -42,7 +41,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-/// As a process leaves it that is killed while it writes.
+/// The file of a process that was killed while writing.
 fn left_over(folder: &Path) -> PathBuf {
     let path = folder.join(".equilux-Ab3xYz.tmp");
     fs::write(&path, "half").unwrap();
@@ -71,7 +70,7 @@ fn what_a_killed_process_left_goes_and_what_is_being_written_stays() {
     assert_eq!(fs::read(&path).unwrap(), b"whole");
 }
 
-/// Of files that others remove in their first moment: all the same, each is there in the end.
+/// Every file exists in the end, although other processes may remove it before it is locked.
 #[test]
 fn writers_and_sweepers_do_not_disturb_each_other() {
     let folder = folder();
@@ -116,7 +115,7 @@ fn without_locks_everybody_has_a_turn() {
     assert!(turns.iter().all(Option::is_some), "{turns:?}");
 }
 
-/// Each kind of file: with one byte changed at any place, or cut anywhere, nothing comes back and the damage is said.
+/// Each kind of file: with one byte changed at any place, or cut anywhere, nothing is loaded and the damage is reported.
 #[test]
 fn no_damage_to_a_file_of_any_kind_is_believed() {
     let folder = folder();

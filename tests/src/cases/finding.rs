@@ -1,13 +1,13 @@
-//! What a case found beside what it should have found.
+//! Expected and actual result of a case.
 
-/// Expected and got, and how far apart they are.
+/// Expected and actual result, and their distance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// What should be.
+    /// The expected result.
     pub expected: String,
-    /// What is.
+    /// The actual result.
     pub got: String,
-    /// The distance; what it is relative to, the case's tolerance says. Infinite where a statement does not hold.
+    /// The distance, in the unit of the case's tolerance. Infinite if a statement does not hold.
     pub error: f64,
     /// Rounds of exchange, where parts exchanged light.
     pub rounds: Option<usize>,
@@ -72,7 +72,7 @@ fn not_a_number_last(error: f64) -> f64 {
     if error.is_nan() { f64::INFINITY } else { error }
 }
 
-/// A number as short as it can be without losing a digit.
+/// The shortest form of a number without loss of digits.
 pub fn number(value: f64) -> String {
     let plain = value == 0.0 || (1e-3..1e6).contains(&value.abs());
     if plain { value.to_string() } else { format!("{value:e}") }

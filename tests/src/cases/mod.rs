@@ -18,18 +18,18 @@ pub use finding::Finding;
 
 use std::any::Any;
 
-/// A claim with its tolerance, and how to find out.
+/// A claim with its tolerance and its test.
 #[derive(Debug, Clone, Copy)]
 pub struct Case {
-    /// What is claimed.
+    /// The claim.
     pub name: &'static str,
-    /// How large the finding's error may be.
+    /// The largest error of the finding.
     pub tolerance: f64,
-    /// Why that large and no larger.
+    /// The reason for the tolerance.
     pub why: &'static str,
-    /// How many rounds of exchange it may take, where that is part of the claim.
+    /// The largest number of rounds, if that is part of the claim.
     pub most_rounds: Option<usize>,
-    /// Finds out.
+    /// Computes the finding.
     pub run: fn() -> Finding,
 }
 
@@ -69,7 +69,7 @@ impl Case {
         Self { name, tolerance, why, most_rounds: None, run }
     }
 
-    /// The same claim, reached in at most so many rounds.
+    /// The same claim within at most `rounds` rounds.
     pub fn within(self, most_rounds: usize) -> Self {
         Self { most_rounds: Some(most_rounds), ..self }
     }
@@ -84,7 +84,7 @@ impl Case {
         std::panic::catch_unwind(self.run).unwrap_or_else(panicked)
     }
 
-    /// Whether the finding bears out the claim.
+    /// Whether the finding supports the claim.
     pub fn holds(&self, finding: &Finding) -> bool {
         let in_time = match (self.most_rounds, finding.rounds) {
             (Some(most), Some(rounds)) => rounds <= most,

@@ -1,4 +1,4 @@
-//! What a point sees of a surface. Each view is computed by rows and by the plain kernel, and both must agree.
+//! The form factor from a point to a surface, computed by rows and by the plain kernel, which must agree.
 
 use crate::shapes::{coupling, grey, mesh, part, rectangle, triangle};
 use equilux_bake::form_factor::plain;

@@ -44,7 +44,7 @@ fn holed(material: Material, hole: f64) -> Part {
     joined([walls, solid(material, dvec3(-0.75, 0.25, 0.125), dvec3(-0.5, 0.5, 0.375))])
 }
 
-/// B(x) + B(x') = E / (1 − ρ) where E shines in one of the two rooms only.
+/// B(x) + B(x') = E / (1 − ρ), where only one of the two rooms emits E.
 fn mirrored(hole: f64) -> Finding {
     let image = moved(holed(grey(0.999, 0.0), hole), DAffine3::from_scale(dvec3(-1., 1., 1.)));
     let nodes = [Node::new("lit", holed(grey(0.999, 1.0), hole)), Node::new("dark", image)];
@@ -93,7 +93,7 @@ fn beside() -> Finding {
     Finding::worst_absolute(dark.map(|lit| (0.0, lit.radiosity[0]))).after(solved.rounds())
 }
 
-/// Two black boxes, one of which shines 1e24 times as much as the other, in a room of ρ = 0.999.
+/// Two black boxes in a room of ρ = 0.999; one emits 1e24 times as much as the other.
 fn black() -> Finding {
     let bright = solid(grey(0.0, 1e12), DVec3::splat(0.25), DVec3::splat(0.375));
     let dim = solid(grey(0.0, 1e-12), DVec3::splat(0.625), DVec3::splat(0.75));

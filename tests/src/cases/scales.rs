@@ -1,4 +1,4 @@
-//! Lengths and light from tiny to huge, alone and side by side: nothing has a scale of its own.
+//! Lengths and light from tiny to huge, alone and side by side: results do not depend on scale.
 
 use super::point::{facing, receiver};
 use super::solve::{Lit, Setting, light, uniform};

@@ -9,14 +9,14 @@ use equilux_assemble::report::Report;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::{Result, Rgb};
 use glam::DVec3;
 
-/// No case may take minutes.
+/// The largest number of rounds: no case may take minutes.
 const MOST_ROUNDS: usize = 3000;
 
-/// How a scene is to be solved.
+/// The settings of a run.
 #[derive(Debug, Clone)]
 pub struct Setting {
     size: ElementSize,
@@ -26,7 +26,7 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// Elements of at most `size` metres, the authored parts, solved down to rounding.
+    /// Elements of at most `size` metres, authored parts, solved to rounding.
     pub fn metres(size: f64) -> Self {
         let size = ElementSize::Metres(size);
         Self { size, division: Division::Authored, error: 0.0, verify: false }
@@ -37,7 +37,7 @@ impl Setting {
         Self { size: ElementSize::Mesh, ..Self::metres(1.0) }
     }
 
-    /// Cut into so many cells instead of the authored parts; 1 leaves those.
+    /// With this many cells instead of the authored parts; 1 keeps those.
     pub fn cut(self, cells: usize) -> Self {
         let division = if cells == 1 { Division::Authored } else { Division::Bisect(cells) };
         Self { division, ..self }
@@ -48,13 +48,13 @@ impl Setting {
         Self { error, ..self }
     }
 
-    /// The classic matrix is solved too.
+    /// With the classic whole-scene solution for comparison.
     pub fn verified(self) -> Self {
         Self { verify: true, ..self }
     }
 }
 
-/// An element and its light, W/m², linear RGB. Reflectance and emission are those that the file was able to hold.
+/// An element and its light, W/m², linear RGB. Reflectance and emission are as rounded by the file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lit {
     /// Its centroid, metres.
@@ -71,29 +71,27 @@ pub struct Lit {
     pub radiosity: Rgb,
 }
 
-/// The answer.
+/// The solution.
 #[derive(Debug)]
 pub struct Solved {
     /// All elements, instance after instance.
     pub elements: Vec<Lit>,
-    /// What the run says about itself.
+    /// The report of the run.
     pub report: Report,
 }
 
-/// Solve a scene of these nodes.
+/// Solves a scene of these nodes.
 pub fn solved(nodes: &[Node], setting: &Setting) -> Result<Solved> {
     solved_file(&Model::of(nodes), setting)
 }
 
-/// Solve a scene file.
+/// Solves a scene file.
 pub fn solved_file(model: &Model, setting: &Setting) -> Result<Solved> {
     let workshop = Workshop::new();
     model.write(&workshop.path("scene.glb"));
     let table = workshop.path("table.csv");
-    let job = workshop.job(setting.division.clone());
-    let mut job = job;
-    job.settings.preparation =
-        Preparation { element_size: Some(setting.size), ..job.settings.preparation.clone() };
+    let mut job = workshop.job(setting.division.clone());
+    job.settings.preparation.element_size = Some(setting.size);
     job.settings.goal = Goal { error: setting.error, rounds: MOST_ROUNDS };
     job.outputs.verify = setting.verify;
     job.outputs.elements = Some(table.clone());
@@ -101,7 +99,7 @@ pub fn solved_file(model: &Model, setting: &Setting) -> Result<Solved> {
     Ok(Solved { elements: lit(&Table::read(&table)), report })
 }
 
-/// The light of a scene that must have some.
+/// The light of a scene that must have a solution.
 pub fn light(nodes: &[Node], setting: &Setting) -> Solved {
     solved(nodes, setting).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -3,9 +3,9 @@
 use super::solve::{Setting, light};
 use super::{Case, Finding};
 use crate::rooms::{echoing, furnished};
-use crate::workshop::{Workshop, assembled};
+use crate::workshop::{Workshop, assembled, changed};
 use equilux_assemble::exchange::settings::Method;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::Division;
 use equilux_formats::LocalSolver;
 use rayon::ThreadPoolBuilder;
 
@@ -49,15 +49,14 @@ fn every_way(cells: usize) -> Finding {
     job.outputs.verify = true;
     use LocalSolver::*;
     let solvers = [Direct, GaussSeidel, Progressive, Iterative].map(|solver| {
-        let mut job = job.clone();
-        job.settings.preparation =
-            Preparation { local_solver: Some(solver), ..job.settings.preparation.clone() };
-        job
+        changed(job.clone(), |job| {
+            job.settings.preparation.local_solver = Some(solver);
+        })
     });
     let methods = [Method::Jacobi, Method::GaussSeidel].map(|method| {
-        let mut job = job.clone();
-        job.settings.method = method;
-        job
+        changed(job.clone(), |job| {
+            job.settings.method = method;
+        })
     });
     Finding::worst(solvers.iter().chain(&methods).map(|job| {
         let report = assembled(job);

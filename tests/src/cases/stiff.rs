@@ -1,4 +1,4 @@
-//! Scenes in which light takes long: nearly everything is reflected, and parts are open to each other or nearly sealed.
+//! Scenes that converge slowly: nearly all light is reflected, and parts are open to each other or nearly sealed.
 
 use super::solve::{Setting, Solved, light, uniform};
 use super::{Case, Finding};
@@ -42,7 +42,7 @@ fn off_the_whole(solved: &Solved) -> Finding {
     Finding::of("the whole-scene solution", format!("{off:.1e} away"), off).after(solved.rounds())
 }
 
-/// Nothing but the floor loses light, so the floor's is everywhere.
+/// Only the floor absorbs light, so the radiosity is that of the floor everywhere.
 fn as_the_floor(setting: &Setting) -> Finding {
     let solved = light(&[Node::new("tower", tower(1.0))], setting);
     let floor =
@@ -50,7 +50,7 @@ fn as_the_floor(setting: &Setting) -> Finding {
     solved.worst(|_| floor)
 }
 
-/// 32 m high, a black floor that shines.
+/// 32 m high, with a black floor that emits.
 fn tower(reflectance: f64) -> Part {
     let mut walls = room(grey(reflectance, 0.0), DVec3::ZERO, dvec3(1., 1., 32.));
     walls.surfaces.retain(|s| s.corners.as_slice().iter().any(|p| p.z != 0.0));
@@ -86,7 +86,7 @@ fn chambers() -> Vec<Node> {
     vec![Node::new("chambers", chambers), Node::new("hall", hall)]
 }
 
-/// Six rooms on top of each other, a part each, with holes between them; the lowest shines, the others `emission` as much.
+/// Six rooms on top of each other, a part each, with holes between them; the lowest emits 1, the others `emission`.
 fn enfilade(emission: f64) -> Vec<Node> {
     let storey = |k: usize| {
         let (low, high) = (k as f64, k as f64 + 1.0);

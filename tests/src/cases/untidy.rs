@@ -1,4 +1,4 @@
-//! Scenes that cannot be, or are not as tidy as they should be: refused or repaired by name, never silently wrong.
+//! Impossible and untidy scenes are refused or repaired with a message, never silently wrong.
 
 use super::solve::{Setting, light, solved, uniform};
 use super::{Case, Finding};
@@ -63,7 +63,7 @@ fn cube() -> Part {
     room(grey(0.5, 1.0), DVec3::ZERO, DVec3::ONE)
 }
 
-/// A closed room that shines.
+/// A closed room that emits.
 fn furnace(reflectance: [f64; 3]) -> Node {
     let paint = Material { reflectance: Rgb(reflectance), ..lamp([1.0; 3]) };
     Node::new("furnace", room(paint, DVec3::ZERO, DVec3::ONE))

@@ -1,4 +1,4 @@
-//! What stands in the way: hidden exactly, however small, thin or many it is.
+//! Occlusion is exact for occluders of any size, thickness and number.
 
 use super::form_factors::romberg;
 use super::point::{facing, receiver, seen};
@@ -67,6 +67,14 @@ pub fn cases() -> Vec<Case> {
             "closed form of polygons of 64 corners",
             ring,
         ),
+    ]
+    .into_iter()
+    .chain(scenes())
+    .collect()
+}
+
+fn scenes() -> Vec<Case> {
+    vec![
         Case::new(
             "a square between plates, averaged",
             1e-8,
@@ -90,7 +98,7 @@ pub fn cases() -> Vec<Case> {
     ]
 }
 
-/// Why a cut sheet is allowed a rounding.
+/// Why the tolerance for a cut sheet is not zero.
 const CRACKS: &str = "edges of cells that meet in T-junctions are one line but for their last digit";
 
 fn square_behind(blocker: Part) -> f64 {
@@ -207,7 +215,7 @@ fn open_boxes() -> Finding {
     Finding::of("rows sum to 1", format!("1 ± {worst:.1e}"), worst)
 }
 
-/// A tower with a floor of one sheet; below it everything shines.
+/// A tower with a floor of one sheet; everything below it emits.
 fn tower() -> Vec<Node> {
     let height = 0.4375;
     let lower = room(grey(0.5, 1.0), DVec3::ZERO, dvec3(1., 1., height));
@@ -233,7 +241,7 @@ fn dark_above(setting: &Setting) -> Finding {
     leaks.after(solved.rounds())
 }
 
-/// The grids of walls and floor do not know of each other, so their edges meet in T-junctions.
+/// The grids of walls and floor are independent, so their edges meet in T-junctions.
 fn sheet() -> Finding {
     Finding::worst([0.3, 0.17].map(|size| dark_above(&Setting::metres(size))))
 }
