@@ -1,7 +1,8 @@
 //! Output files that are written whole or not at all. Input: a path and a closure that writes the contents. Output: the
 //! complete file under that path, or the previous file unchanged.
 
-use equilux_formats::{Error, Result, remove_left_over_beside, write_whole};
+use equilux_formats::whole_file::{remove_left_over_beside, write_whole};
+use equilux_formats::{Error, Result};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,8 @@ use equilux_bake::elements::repainted;
 use equilux_bake::oven::cached::Origin;
 use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::world::World;
-use equilux_formats::{Instance, LocalEquilibrium, Optics, Result};
+use equilux_formats::baked::LocalEquilibrium;
+use equilux_formats::{Instance, Optics, Result};
 
 /// The parts of a scene at their placements.
 #[derive(Debug)]

@@ -1,7 +1,8 @@
 //! Sums over a whole scene: means, differences and row sums.
 
 use crate::exchange::system::InstanceSystem;
-use equilux_formats::{Element, Rgb, RowSumDefect};
+use equilux_formats::rows::RowSumDefect;
+use equilux_formats::{Element, Rgb};
 use rayon::prelude::*;
 
 /// The mean over the scene's area, channel by channel.

@@ -23,10 +23,6 @@ macro_rules! id {
 }
 
 id!(
-    /// An element within its part.
-    ElementId
-);
-id!(
     /// A face (merged coplanar elements) within its part.
     FaceId
 );
@@ -37,8 +33,4 @@ id!(
 id!(
     /// A part within its scene.
     PartId
-);
-id!(
-    /// An instance within its scene.
-    InstanceId
 );

@@ -1,39 +1,48 @@
 //! Data types of Equilux and their storage, without physics.
 //!
 //! Data flows glTF → [`Part`] → [`BakedPart`] → [`Scene`] → blocks of [`Rows`] → [`Solution`]. `bake` and `assemble`
-//! compute on these types; this crate defines the types and their file formats.
+//! compute on these types; this crate defines the types and their file formats. A value is stored under the key of a
+//! manifest, which lists what the value was made from:
+//!
+//! ```
+//! # let folder = tempfile::tempdir()?;
+//! use equilux_formats::fingerprint::Manifest;
+//! use equilux_formats::store::Lookup;
+//! use equilux_formats::{Solution, Store};
+//!
+//! let store = Store::open(folder.path())?;
+//! let manifest = Manifest::new().setting("scene", "hall.glb").setting("element size", "0.25 m");
+//! store.save(&manifest, &Solution { instances: vec![], radiosity: vec![] })?;
+//! assert!(matches!(store.load::<Solution>(&manifest.key()), Lookup::Found(_)));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-mod baked;
+pub mod baked;
 mod clusters;
-mod container;
+pub mod container;
 mod error;
-mod fingerprint;
+pub mod fingerprint;
 mod geometry;
 pub mod glb;
 mod ids;
 mod part;
 mod rgb;
-mod rows;
+pub mod rows;
 mod scene;
-mod solution;
-mod store;
-mod stored;
-mod texture;
-mod whole_file;
+pub mod solution;
+pub mod store;
+pub mod stored;
+pub mod texture;
+pub mod whole_file;
 
-pub use baked::{BakedGeometry, BakedLight, BakedPart, BoundaryResponses, Factors, LocalEquilibrium, Lu};
+pub use baked::BakedPart;
 pub use clusters::ClusterTree;
-pub use container::{FORMAT_VERSION, Kind, Number, Reader, Writer};
 pub use error::{Error, Problem, Result, unless_stopped};
-pub use fingerprint::{Content, Digest, Key, Manifest};
 pub use geometry::{Corners, Element, Face, Geometry, Optics, Tints};
-pub use ids::{ElementId, FaceId, InstanceId, MaterialId, PartId};
+pub use ids::{FaceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
 pub use rgb::Rgb;
-pub use rows::{Precision, RowGroup, RowSumDefect, Rows, SINGLE_ROUNDING};
+pub use rows::Rows;
 pub use scene::{Camera, Instance, LightKind, LightUnits, PunctualLight, Repainted, Scene};
-pub use solution::{Solution, SolvedInstance};
-pub use store::{Evicted, Lookup, Store, Tally, Turn};
-pub use stored::Stored;
-pub use texture::{Texture, TexturedTriangle, Textures, Wrap};
-pub use whole_file::{check_writable_beside, remove_left_over_beside, write_whole};
+pub use solution::Solution;
+pub use store::Store;

@@ -1,6 +1,9 @@
 //! A damaged cache costs time and a note, never a wrong answer.
 
-use equilux_formats::{BakedGeometry, BakedLight, Kind, Reader, Rows, Stored};
+use equilux_formats::Rows;
+use equilux_formats::baked::{BakedGeometry, BakedLight};
+use equilux_formats::container::{Kind, Reader};
+use equilux_formats::stored::Stored;
 use equilux_tests::rooms::furnished;
 use equilux_tests::workshop::Workshop;
 use serde_json::Value;

@@ -4,7 +4,8 @@
 //! metres, and openings of the treecode, 0 for the exact matrix. Errors are against the first.
 
 use equilux_bake::treecode::{EXACT, Resolution};
-use equilux_formats::{Precision, Rgb};
+use equilux_formats::Rgb;
+use equilux_formats::rows::Precision;
 use equilux_tests::measure::Level;
 use std::time::Instant;
 

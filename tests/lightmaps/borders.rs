@@ -6,9 +6,8 @@ use equilux_assemble::lightmap::texels::Texels;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::oven::prepare::{Division, Preparation};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{
-    Instance, Material, Part, PartId, Rgb, Scene, Texture, TexturedTriangle, Textures, Wrap,
-};
+use equilux_formats::texture::{Texture, TexturedTriangle, Textures, Wrap};
+use equilux_formats::{Instance, Material, Part, PartId, Rgb, Scene};
 use equilux_tests::lit::{lightmap, lit_scene};
 use equilux_tests::shapes::{grey, part, quad, rectangle, solid, triangle};
 use glam::{DAffine3, DQuat, DVec3, dvec2, dvec3};

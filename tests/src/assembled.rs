@@ -11,7 +11,8 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::local_equilibrium;
 use equilux_bake::treecode::{Audience, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Geometry, LocalEquilibrium, LocalSolver, Optics, Rgb, Rows};
+use equilux_formats::baked::LocalEquilibrium;
+use equilux_formats::{Geometry, LocalSolver, Optics, Rgb, Rows};
 use glam::DAffine3;
 
 /// Parts, their blocks, and their light on their own.

@@ -2,7 +2,8 @@
 
 use crate::model::Node;
 use crate::shapes::{joined, part, rectangle, room, solid};
-use equilux_formats::{Material, Part, Rgb, Textures};
+use equilux_formats::texture::Textures;
+use equilux_formats::{Material, Part, Rgb};
 use glam::{DVec3, dvec3};
 
 /// A material of this reflectance, channel by channel, without emission.

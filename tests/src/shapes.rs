@@ -4,7 +4,8 @@ use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
-use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rgb, Rows, Surface, Textures};
+use equilux_formats::texture::Textures;
+use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rgb, Rows, Surface};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// A grey material: reflectance and emission the same in all channels.

@@ -25,9 +25,8 @@ use equilux_bake::oven::cached::Origin;
 use equilux_bake::oven::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
 use equilux_bake::oven::{Baked, geometry_manifest};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{
-    BakedPart, BoundaryResponses, Error, LightUnits, LocalEquilibrium, Optics, Result, Rgb, Rows, Store,
-};
+use equilux_formats::baked::{BoundaryResponses, LocalEquilibrium};
+use equilux_formats::{BakedPart, Error, LightUnits, Optics, Result, Rgb, Rows, Store};
 use glam::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};

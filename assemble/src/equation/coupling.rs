@@ -13,7 +13,9 @@ use equilux_bake::oven::keys::{
 };
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
-use equilux_formats::{BakedLight, Key, LocalEquilibrium, Manifest, Result, Rows, Store};
+use equilux_formats::baked::{BakedLight, LocalEquilibrium};
+use equilux_formats::fingerprint::{Key, Manifest};
+use equilux_formats::{Result, Rows, Store};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::ops::Range;

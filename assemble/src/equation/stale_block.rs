@@ -5,7 +5,10 @@
 use crate::placed_parts::PlacedParts;
 use equilux_bake::oven::keys::{RelativePlacement, placements_in};
 use equilux_bake::treecode::revision::{Change, Revision};
-use equilux_formats::{BakedGeometry, Geometry, Key, Lookup, Manifest, Rows, Store};
+use equilux_formats::baked::BakedGeometry;
+use equilux_formats::fingerprint::{Key, Manifest};
+use equilux_formats::store::Lookup;
+use equilux_formats::{Geometry, Rows, Store};
 use glam::DAffine3;
 use std::borrow::Cow;
 use std::ops::Range;

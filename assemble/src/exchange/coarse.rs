@@ -7,7 +7,8 @@
 use crate::exchange::groups::{Group, ranges};
 use crate::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::direct::{factorise_dense, solve};
-use equilux_formats::{Factors, Rgb};
+use equilux_formats::Rgb;
+use equilux_formats::baked::Factors;
 use rayon::prelude::*;
 use std::ops::Range;
 

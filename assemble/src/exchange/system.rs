@@ -1,7 +1,8 @@
 //! One instance's block row of the radiosity equation B = E + ρFB, and its residual.
 
 use equilux_bake::equilibrium::LocalSystem;
-use equilux_formats::{BoundaryResponses, ClusterTree, Optics, Rgb, Rows};
+use equilux_formats::baked::BoundaryResponses;
+use equilux_formats::{ClusterTree, Optics, Rgb, Rows};
 
 /// One instance's block row of the equation.
 #[derive(Debug)]

@@ -10,7 +10,8 @@
 use crate::exchange::system::InstanceSystem;
 use equilux_bake::equilibrium::{apply, largest};
 use equilux_bake::treecode::MISSED;
-use equilux_formats::{ClusterTree, Precision, Rgb, SINGLE_ROUNDING};
+use equilux_formats::rows::{Precision, SINGLE_ROUNDING};
+use equilux_formats::{ClusterTree, Rgb};
 use rayon::prelude::*;
 
 /// The iteration ends when a step lowers the bound by less than this share.

@@ -15,7 +15,7 @@ pub(crate) mod unlit;
 use crate::exchange::energy::Energy;
 use crate::report::advice::Advice;
 use crate::report::seconds::Seconds;
-use equilux_formats::RowSumDefect;
+use equilux_formats::rows::RowSumDefect;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

@@ -6,7 +6,8 @@
 
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
-use equilux_formats::{Content, Digest, Error, Result};
+use equilux_formats::fingerprint::{Content, Digest};
+use equilux_formats::{Error, Result};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};

@@ -2,7 +2,10 @@
 //! same solution; a close one needs fewer rounds.
 
 use crate::placed_parts::PlacedParts;
-use equilux_formats::{Lookup, Manifest, Result, Rgb, Solution, SolvedInstance, Store};
+use equilux_formats::fingerprint::Manifest;
+use equilux_formats::solution::SolvedInstance;
+use equilux_formats::store::Lookup;
+use equilux_formats::{Result, Rgb, Solution, Store};
 use std::path::Path;
 
 /// The last radiosity of every instance, W/m²; zero where the instance is new or its part has changed. None if no

@@ -7,7 +7,8 @@ use super::table::{csv, points_csv};
 use crate::output_file;
 use equilux_bake::elements::{ElementSize, subdivide};
 use equilux_bake::world::World;
-use equilux_formats::{Content, Error, Result, Scene};
+use equilux_formats::fingerprint::Content;
+use equilux_formats::{Error, Result, Scene};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 

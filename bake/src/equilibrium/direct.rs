@@ -1,7 +1,8 @@
 //! LU factorisation of I − ρF, one a distinct colour channel, and solves with it. nalgebra is single-threaded, so
 //! results do not depend on the number of threads; parts are factorised in parallel.
 
-use equilux_formats::{ClusterTree, Factors, Lu, Rgb, Rows};
+use equilux_formats::baked::{Factors, Lu};
+use equilux_formats::{ClusterTree, Rgb, Rows};
 use nalgebra::{DMatrix, DMatrixView, DVector, LU};
 
 /// Factorises I − ρF for every distinct channel of ρ.

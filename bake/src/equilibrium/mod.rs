@@ -15,7 +15,8 @@ mod progressive;
 mod system;
 
 use columns::Columns;
-use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
+use equilux_formats::baked::Factors;
+use equilux_formats::{ClusterTree, LocalSolver, Rgb, Rows};
 use system::ROUNDING;
 
 pub use channels::largest;

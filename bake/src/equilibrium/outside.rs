@@ -8,7 +8,8 @@
 
 use super::system::LocalSystem;
 use crate::geometry::aabb::Aabb;
-use equilux_formats::{BoundaryResponses, Element, Geometry, Rgb};
+use equilux_formats::baked::BoundaryResponses;
+use equilux_formats::{Element, Geometry, Rgb};
 
 /// Relative residual of a response. Responses accelerate the exchange and do not affect its result, so a rough solution
 /// suffices.

@@ -1,7 +1,8 @@
 //! The equation (I − ρF) B = q of one part: its self block F and reflectance ρ.
 
 use super::columns::Columns;
-use equilux_formats::{ClusterTree, Factors, LocalSolver, Rgb, Rows};
+use equilux_formats::baked::Factors;
+use equilux_formats::{ClusterTree, LocalSolver, Rgb, Rows};
 use rayon::prelude::*;
 use std::sync::OnceLock;
 

@@ -8,7 +8,8 @@ use super::meshes::Mesh;
 use super::notes::Notes;
 use super::repaint::Look;
 use super::surfaces::{Dropped, f32_spacing};
-use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface, TexturedTriangle};
+use equilux_formats::texture::TexturedTriangle;
+use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface};
 use glam::{DAffine3, DVec3};
 
 /// The largest number of surfaces of a part: a few kilobytes of nodes that share a mesh could produce any number.

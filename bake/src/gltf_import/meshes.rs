@@ -6,7 +6,8 @@ use super::materials::{Paint, Uses, paint};
 use super::notes::Notes;
 use super::surfaces::{Dropped, surfaces};
 use super::triangles::triangles;
-use equilux_formats::{Result, Surface, TexturedTriangle};
+use equilux_formats::texture::TexturedTriangle;
+use equilux_formats::{Result, Surface};
 use std::collections::HashMap;
 use std::rc::Rc;
 

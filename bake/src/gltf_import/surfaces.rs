@@ -4,7 +4,8 @@
 use super::triangles::Triangles;
 use crate::geometry::point_key::{PointKey, point_key};
 use crate::geometry::tolerance::{BENT_QUAD, ROUNDED_CORNERS};
-use equilux_formats::{Corners, MaterialId, Surface, TexturedTriangle};
+use equilux_formats::texture::TexturedTriangle;
+use equilux_formats::{Corners, MaterialId, Surface};
 use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::ops::AddAssign;

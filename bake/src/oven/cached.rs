@@ -1,7 +1,10 @@
 //! Takes results from the cache, or computes and caches them. The reasons derive from the manifest that the key derives from.
 
 use crate::monitor::Monitor;
-use equilux_formats::{Key, Lookup, Manifest, Result, Store, Stored, Turn};
+use equilux_formats::fingerprint::{Key, Manifest};
+use equilux_formats::store::{Lookup, Turn};
+use equilux_formats::stored::Stored;
+use equilux_formats::{Result, Store};
 use std::time::Duration;
 
 /// Where a result came from.

@@ -4,7 +4,8 @@
 //! `$$` is a dollar sign. Backslashes before a space are doubled, as compilers do and Ninja's manual requires. Names
 //! with line breaks cannot be represented.
 
-use equilux_formats::{Error, Result, write_whole};
+use equilux_formats::whole_file::write_whole;
+use equilux_formats::{Error, Result};
 use std::path::{Path, PathBuf};
 
 /// Writes to `path` that `target` depends on `sources`. Paths are written as given.

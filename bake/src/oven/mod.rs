@@ -15,9 +15,10 @@ use crate::monitor::Monitor;
 use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use cached::{Origin, cached, foreseen};
+use equilux_formats::baked::{BakedGeometry, BakedLight, LocalEquilibrium};
+use equilux_formats::fingerprint::{Content, Digest, Key, Manifest};
 use equilux_formats::{
-    BakedGeometry, BakedLight, BakedPart, Content, Digest, Element, Error, Geometry, Instance, Key,
-    LocalEquilibrium, LocalSolver, Manifest, MaterialId, Optics, Result, Rgb, Rows, Store,
+    BakedPart, Element, Error, Geometry, Instance, LocalSolver, MaterialId, Optics, Result, Rgb, Rows, Store,
 };
 use glam::DAffine3;
 use prepare::PreparedPart;

@@ -9,9 +9,10 @@ use crate::geometry::aabb::Aabb;
 use crate::textures::tints;
 use crate::treecode::Resolution;
 use crate::world::World;
+use equilux_formats::texture::TexturedTriangle;
 use equilux_formats::{
     Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, Part,
-    PartId, Result, Scene, TexturedTriangle, Tints,
+    PartId, Result, Scene, Tints,
 };
 use glam::{DAffine3, DVec3};
 

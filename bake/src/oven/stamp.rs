@@ -1,6 +1,7 @@
 //! Files for build tools to watch: created empty, or given the present time, when a run succeeds.
 
-use equilux_formats::{Error, Result, check_writable_beside};
+use equilux_formats::whole_file::check_writable_beside;
+use equilux_formats::{Error, Result};
 use std::fs::File;
 use std::io;
 use std::path::Path;

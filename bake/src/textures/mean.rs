@@ -14,7 +14,8 @@
 use super::area_and_middle;
 use super::sums::Sums;
 use crate::geometry::polygon::{Polygon, part};
-use equilux_formats::{Rgb, Wrap};
+use equilux_formats::Rgb;
+use equilux_formats::texture::Wrap;
 use glam::{DVec2, DVec3};
 use smallvec::SmallVec;
 
@@ -129,7 +130,8 @@ fn line_through(corners: &[DVec2]) -> Option<[DVec2; 2]> {
 mod tests {
     use super::super::Sheet;
     use super::*;
-    use equilux_formats::{MaterialId, Texture, TexturedTriangle};
+    use equilux_formats::MaterialId;
+    use equilux_formats::texture::{Texture, TexturedTriangle};
     use glam::{dvec2, dvec3};
     use proptest::prelude::*;
 

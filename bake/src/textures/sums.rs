@@ -1,7 +1,8 @@
 //! A texture with prefix sums for computing averages: colours of single texels, and sums along rows, with wrapping.
 //! Positions are in texels.
 
-use equilux_formats::{Rgb, Texture, Wrap};
+use equilux_formats::Rgb;
+use equilux_formats::texture::{Texture, Wrap};
 use glam::{DVec2, dvec2};
 
 /// The value of a texel with full colour and alpha.

@@ -7,7 +7,7 @@ use super::request::Request;
 use super::search::Search;
 use super::viewers::Viewers;
 use crate::monitor::Monitor;
-use equilux_formats::RowGroup;
+use equilux_formats::rows::RowGroup;
 use std::time::{Duration, Instant};
 
 /// Computes the rows of one block.

@@ -1,6 +1,6 @@
 //! The resolution of a block.
 
-use equilux_formats::Precision;
+use equilux_formats::rows::Precision;
 
 /// The accuracy of a block.
 #[derive(Debug, Clone, Copy, PartialEq)]

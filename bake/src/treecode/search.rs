@@ -8,7 +8,7 @@ use super::request::Request;
 use super::resolution::MISSED;
 use super::revision::Revised;
 use crate::world::Sender;
-use equilux_formats::RowGroup;
+use equilux_formats::rows::RowGroup;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 

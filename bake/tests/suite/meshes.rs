@@ -11,9 +11,8 @@ use equilux_bake::geometry::outline::Plane;
 use equilux_bake::geometry::polygon::Polygon;
 use equilux_bake::meshes::{Mesh, Obstruction, SeenMesh, SeenPolygon};
 use equilux_bake::world::World;
-use equilux_formats::{
-    Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Rgb, Surface, Textures,
-};
+use equilux_formats::texture::Textures;
+use equilux_formats::{Corners, Element, Face, FaceId, Geometry, Material, MaterialId, Part, Rgb, Surface};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;

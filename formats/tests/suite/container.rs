@@ -1,10 +1,12 @@
 //! Files round-trip bit for bit, or reading fails with a reason.
 
 use crate::samples::{coupling, folder, light, manifest, part, read, read_bytes, written};
-use equilux_formats::{
-    BakedGeometry, BakedLight, Error, FORMAT_VERSION, FaceId, Kind, Manifest, Precision, Reader, Rows,
-    Stored, Writer,
-};
+use equilux_formats::baked::{BakedGeometry, BakedLight};
+use equilux_formats::container::{FORMAT_VERSION, Kind, Reader, Writer};
+use equilux_formats::fingerprint::Manifest;
+use equilux_formats::rows::Precision;
+use equilux_formats::stored::Stored;
+use equilux_formats::{Error, FaceId, Rows};
 use proptest::prelude::*;
 use std::fmt::Debug;
 use std::path::Path;

@@ -1,7 +1,11 @@
 //! Cache lookups by key and by name.
 
 use crate::samples::{coupling, folder, light, manifest};
-use equilux_formats::{BakedGeometry, BakedLight, Kind, Lookup, Manifest, Rows, Store};
+use equilux_formats::baked::{BakedGeometry, BakedLight};
+use equilux_formats::container::Kind;
+use equilux_formats::fingerprint::Manifest;
+use equilux_formats::store::Lookup;
+use equilux_formats::{Rows, Store};
 
 #[test]
 fn the_store_finds_what_it_keeps_and_nothing_else() {

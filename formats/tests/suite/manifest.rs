@@ -1,7 +1,7 @@
 //! Keys change exactly when the manifest gives a reason.
 
 use crate::samples::manifest;
-use equilux_formats::{Content, Manifest};
+use equilux_formats::fingerprint::{Content, Manifest};
 use proptest::prelude::*;
 
 #[test]

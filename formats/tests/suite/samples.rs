@@ -1,9 +1,12 @@
 //! Sample values of every kind of file, and helpers to write and read them.
 
+use equilux_formats::baked::{BakedGeometry, BakedLight, BoundaryResponses, Factors, LocalEquilibrium, Lu};
+use equilux_formats::container::Reader;
+use equilux_formats::fingerprint::{Content, Manifest};
+use equilux_formats::rows::{Precision, RowGroup};
+use equilux_formats::stored::Stored;
 use equilux_formats::{
-    BakedGeometry, BakedLight, BoundaryResponses, ClusterTree, Content, Corners, Element, Error, Face,
-    FaceId, Factors, Geometry, LocalEquilibrium, LocalSolver, Lu, Manifest, MaterialId, Optics, Precision,
-    Reader, Rgb, RowGroup, Rows, Stored,
+    ClusterTree, Corners, Element, Error, Face, FaceId, Geometry, LocalSolver, MaterialId, Optics, Rgb, Rows,
 };
 use glam::DVec3;
 use std::path::{Path, PathBuf};

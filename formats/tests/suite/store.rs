@@ -1,9 +1,11 @@
 //! Robustness of the cache folder: killed processes, concurrent processes, damaged files, and limited size.
 
-use equilux_formats::{
-    BakedLight, BoundaryResponses, Content, Evicted, Key, Kind, LocalEquilibrium, LocalSolver, Lookup,
-    Manifest, Optics, Rgb, Rows, Store, Tally, remove_left_over_beside, write_whole,
-};
+use equilux_formats::baked::{BakedLight, BoundaryResponses, LocalEquilibrium};
+use equilux_formats::container::Kind;
+use equilux_formats::fingerprint::{Content, Key, Manifest};
+use equilux_formats::store::{Evicted, Lookup, Tally};
+use equilux_formats::whole_file::{remove_left_over_beside, write_whole};
+use equilux_formats::{LocalSolver, Optics, Rgb, Rows, Store};
 use std::collections::HashSet;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};

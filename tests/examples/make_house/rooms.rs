@@ -1,7 +1,8 @@
 //! The parts that enclose: a room with a door and a window, half a hall with two doors, and what fills a window.
 
 use crate::furniture::block;
-use equilux_formats::{Material, Part, Rgb, Textures};
+use equilux_formats::texture::Textures;
+use equilux_formats::{Material, Part, Rgb};
 use equilux_tests::shapes::{joined, part, rectangle};
 use glam::{DVec2, DVec3, dvec2, dvec3};
 use std::f64::consts::PI;
