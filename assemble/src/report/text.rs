@@ -42,17 +42,17 @@ impl Report {
     }
 
     fn computed_line(&self) -> String {
-        if self.form_factors_computed == 0 {
-            return "form factors: all from the cache".into();
-        }
         let blocks = &self.blocks;
+        let computed = blocks.self_baked + blocks.self_corrected + blocks.coupling_computed;
         let reused = blocks.self_reused + blocks.coupling_reused;
-        format!(
-            "form factors: {} computed, {} of {} blocks from the cache",
-            thousands(self.form_factors_computed),
-            reused,
-            reused + blocks.self_baked + blocks.self_corrected + blocks.coupling_computed
-        )
+        match (self.form_factors_computed, computed) {
+            (0, 0) => "form factors: all from the cache".into(),
+            (form_factors, _) => format!(
+                "form factors: {} computed, {reused} of {} blocks from the cache",
+                thousands(form_factors),
+                reused + computed
+            ),
+        }
     }
 
     fn error_line(&self) -> String {
@@ -137,8 +137,10 @@ fn thousands(number: usize) -> String {
 
 /// Two digits of a number, written without an exponent where that is short.
 fn rounded(number: f64) -> String {
-    if number == 0.0 || (1e-3..1e4).contains(&number) {
-        let decimals = (1 - number.max(1e-3).log10().floor() as i32).clamp(0, 4) as usize;
+    if number == 0.0 {
+        "0".into()
+    } else if (1e-3..1e4).contains(&number) {
+        let decimals = (1 - number.log10().floor() as i32).clamp(0, 4) as usize;
         format!("{number:.decimals$}")
     } else {
         format!("{number:.1e}")
@@ -180,7 +182,7 @@ mod tests {
     #[test]
     fn numbers_are_short() {
         for (number, expected) in
-            [(0.0, "0.0000"), (0.01234, "0.012"), (2.25, "2.2"), (1234.0, "1234"), (3e-9, "3.0e-9")]
+            [(0.0, "0"), (0.01234, "0.012"), (2.25, "2.2"), (1234.0, "1234"), (3e-9, "3.0e-9")]
         {
             assert_eq!(rounded(number), expected);
         }
