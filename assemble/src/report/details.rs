@@ -1,6 +1,6 @@
 //! The complete report as text, printed by `--verbose`: the paper's steps, the rounds, sums and sizes.
 
-use super::text::{NOT_CONVERGED, bytes, left_out_line, percent, rgb};
+use super::text::{NOT_CONVERGED, bytes, counted, left_out_line, percent, rgb};
 use super::{ErrorReport, Report, RoundReport, Verify};
 use crate::report::advice::Advice;
 
@@ -9,12 +9,12 @@ impl Report {
     pub fn details(&self) -> String {
         let mut lines = vec![
             format!(
-                "{}: {} elements ({}), {} parts in {} places",
+                "{}: {} elements ({}), {} in {}",
                 self.scene,
                 self.elements,
                 self.element_size,
-                self.parts.len(),
-                self.instances
+                counted(self.parts.len(), "part"),
+                counted(self.instances, "place")
             ),
             self.blocks_line(),
         ];

@@ -123,7 +123,7 @@ impl Verify {
 }
 
 /// A count with its noun.
-fn counted(count: usize, what: &str) -> String {
+pub fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 

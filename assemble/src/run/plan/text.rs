@@ -2,7 +2,7 @@
 
 use super::Plan;
 use crate::report::fates::{corrected_line, part_line, step};
-use crate::report::text::{bytes, left_out_line};
+use crate::report::text::{bytes, counted, left_out_line};
 
 /// Number of instances that are named; the rest are counted.
 const MAX_NAMED: usize = 4;
@@ -11,13 +11,13 @@ impl Plan {
     /// A line for each part, for each group of instances with the same fate, and for the skipped work.
     pub fn text(&self) -> String {
         let mut lines = vec![format!(
-            "{}: {} elements ({}; {}), {} parts in {} places; no form factor is computed now",
+            "{}: {} elements ({}; {}), {} in {}; no form factor is computed now",
             self.scene,
             self.elements,
             self.element_size,
             self.resolution,
-            self.parts.len(),
-            self.instances.len()
+            counted(self.parts.len(), "part"),
+            counted(self.instances.len(), "place")
         )];
         lines.extend(self.parts.iter().map(part_line));
         lines.extend(self.instances.iter().filter_map(corrected_line));
