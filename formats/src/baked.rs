@@ -19,9 +19,11 @@ pub struct BakedPart {
     pub tints: Tints,
     /// The materials, for rendering and export.
     pub materials: Vec<Material>,
-    /// F_kk with nothing but the part itself in the way, `elements × elements`.
+    /// F_kk with nothing but the part itself in the way, `unknowns × senders of the part`.
     pub self_block: Rows,
-    /// Its local equilibrium.
+    /// What the rays of counted rows may still meet in a scene; empty if rows are exact.
+    pub escapes: Escapes,
+    /// Its local equilibrium, one row an unknown.
     pub local: LocalEquilibrium,
 }
 
@@ -30,7 +32,7 @@ pub struct BakedPart {
 pub struct LocalEquilibrium {
     /// The solver that computed it, which the exchange also uses.
     pub solver: LocalSolver,
-    /// Radiosity B, W/m², linear RGB, one row an element.
+    /// Radiosity B, W/m², linear RGB, one row an unknown.
     pub radiosity: Vec<Rgb>,
     /// The factors of I − ρF_kk; only the direct solver keeps them.
     pub factors: Option<Factors>,
@@ -41,7 +43,7 @@ pub struct LocalEquilibrium {
 /// A part's responses to light from outside. The exchange uses them as a coarse space, to accelerate its convergence.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BoundaryResponses {
-    /// The part's radiosity under some simple lights from outside, one vector a light, one row an element; orthonormal
+    /// The part's radiosity under some simple lights from outside, one vector a light, one row an unknown; orthonormal
     /// by area in each channel: Σ_i A_i a_i b_i is 1 for a = b, else 0. Vectors that a channel lacks are zero there.
     pub radiosity: Vec<Vec<Rgb>>,
     /// Σ_i A_i a_i ((I − ρF_kk) b)_i for each pair of them, row-major.
@@ -75,8 +77,30 @@ pub struct Lu {
 pub struct BakedGeometry {
     /// Elements and faces, in the part's own coordinates.
     pub geometry: Geometry,
-    /// F_kk with nothing but the part itself in the way, `elements × elements`.
+    /// F_kk with nothing but the part itself in the way, `unknowns × senders of the part`.
     pub self_block: Rows,
+    /// What the rays of counted rows may still meet in a scene; empty if rows are exact.
+    pub escapes: Escapes,
+}
+
+/// What the rays of a part's counted rows may still meet in a scene.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Escapes {
+    /// The rays that leave the part: a bit a ray, in as many words a row as its rays need.
+    pub escaped: Vec<u64>,
+    /// Rays a row that start inside a solid of the part.
+    pub covered: Vec<u16>,
+    /// For each row a box around its rays up to what they meet in the part, or as far as something may cover their start if they
+    /// leave it: lowest and highest corner, rounded outwards.
+    pub reach: Vec<[f32; 6]>,
+}
+
+impl Escapes {
+    /// The escaped rays of a row, of `rays`, as bits.
+    pub fn of_row(&self, row: usize, rays: u32) -> &[u64] {
+        let words = rays.div_ceil(64) as usize;
+        &self.escaped[row * words..(row + 1) * words]
+    }
 }
 
 /// The contents of a light file: results that also depend on reflectance and emission.

@@ -41,6 +41,11 @@ impl ClusterTree {
         Ok(Self { children, areas, parents })
     }
 
+    /// Elements of the given areas (m²) without clusters.
+    pub fn flat(areas: Vec<f64>) -> Self {
+        Self { children: vec![], parents: (0..areas.len() as u32).collect(), areas }
+    }
+
     /// One tree over several: their elements one after the other, then clusters that join the trees, then the trees'
     /// own clusters. Empty trees add nothing.
     pub fn joined(trees: &[&Self]) -> Self {
@@ -78,9 +83,13 @@ impl ClusterTree {
         self.areas.len()
     }
 
-    /// The root node; none in an empty tree.
+    /// The root node; none in an empty tree. A flat tree has none either, unless it has one element.
     pub fn root(&self) -> Option<usize> {
-        (!self.areas.is_empty()).then(|| if self.children.is_empty() { 0 } else { self.elements() })
+        match self.elements() {
+            0 => None,
+            1 => Some(0),
+            elements => (!self.children.is_empty()).then_some(elements),
+        }
     }
 
     /// The two nodes inside a cluster; none for an element.

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 compile_error!("arrays are written as they lie in memory, which must be little-endian");
 
 /// The version this build writes, and the only one it reads.
-pub const FORMAT_VERSION: u32 = 4;
+pub const FORMAT_VERSION: u32 = 5;
 
 const MAGIC: [u8; 8] = *b"EQUILUX\0";
 const HEADER_LENGTH: usize = 56;

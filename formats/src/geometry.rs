@@ -142,6 +142,64 @@ pub struct Geometry {
     pub faces: Vec<Face>,
     /// The hierarchy of the elements.
     pub clusters: ClusterTree,
+    /// The patches that are unknowns of rows by rays; none if rows are exact.
+    pub patches: Option<Patches>,
+}
+
+/// Neighbouring elements as one unknown. The elements of a dense mesh are finer than its light needs to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patches {
+    /// The patch of each element.
+    pub of: Vec<u32>,
+    /// The patches, without clusters.
+    pub tree: ClusterTree,
+    /// Rays a row.
+    pub rays: u32,
+}
+
+impl Patches {
+    /// These patches over elements. Fails with a reason if they are not numbered without gaps.
+    pub fn new(of: Vec<u32>, elements: &[Element], rays: u32) -> Result<Self, String> {
+        let count = of.iter().max().map_or(0, |&last| last as usize + 1);
+        if of.len() != elements.len() || count > of.len() {
+            return Err(format!("{} elements in {count} patches, of {}", of.len(), elements.len()));
+        }
+        let mut areas = vec![0.0; count];
+        of.iter().zip(elements).for_each(|(&patch, element)| areas[patch as usize] += element.area);
+        if let Some(empty) = areas.iter().position(|&area| area == 0.0) {
+            return Err(format!("patch {empty} without elements"));
+        }
+        Ok(Self { of, tree: ClusterTree::flat(areas), rays })
+    }
+
+    /// The means over patches of values of elements.
+    pub fn means(&self, elements: &[Element], values: &[Rgb]) -> Vec<Rgb> {
+        let mut means = vec![Rgb::BLACK; self.tree.elements()];
+        for ((&patch, element), &value) in self.of.iter().zip(elements).zip(values) {
+            means[patch as usize] += value * (element.area / self.tree.area_of(patch as usize));
+        }
+        means
+    }
+}
+
+impl Geometry {
+    /// The unknowns and what stands for several of them: patches, or elements and clusters.
+    pub fn unknowns(&self) -> &ClusterTree {
+        self.patches.as_ref().map_or(&self.clusters, |patches| &patches.tree)
+    }
+
+    /// An element of an unknown, its first.
+    pub fn element_of(&self, unknown: usize) -> usize {
+        let first = |patches: &Patches| patches.of.iter().position(|&patch| patch as usize == unknown);
+        self.patches.as_ref().and_then(first).unwrap_or(unknown)
+    }
+
+    /// The optics of the unknowns from those of the elements.
+    pub fn optics_of_unknowns(&self, optics: &Optics) -> Optics {
+        let Some(patches) = &self.patches else { return optics.clone() };
+        let means = |values: &[Rgb]| patches.means(&self.elements, values);
+        Optics { reflectance: means(&optics.reflectance), emission: means(&optics.emission) }
+    }
 }
 
 /// What textures and vertex colours multiply each element's reflectance and emission by: averages over the element, one row an

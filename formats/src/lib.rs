@@ -38,7 +38,7 @@ pub mod whole_file;
 pub use baked::BakedPart;
 pub use clusters::ClusterTree;
 pub use error::{Error, Problem, Result, unless_stopped};
-pub use geometry::{Corners, Element, Face, Geometry, Optics, Tints};
+pub use geometry::{Corners, Element, Face, Geometry, Optics, Patches, Tints};
 pub use ids::{FaceId, MaterialId, PartId};
 pub use part::{LocalSolver, Material, Part, Surface};
 pub use rgb::Rgb;

@@ -19,6 +19,8 @@ pub enum Precision {
     Full,
     /// f32: the relative error of each entry and each sum of entries is at most [`SINGLE_ROUNDING`].
     Single,
+    /// Whole numbers of rays, as counted.
+    Counts,
 }
 
 /// Largest relative error of an entry stored as f32: half a unit in the last place.
@@ -35,7 +37,16 @@ pub struct RowGroup {
     pub receivers: usize,
 }
 
-/// A block of exact form factors, `receivers × senders`.
+/// A row of counted rays, from which blocks are built.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CountedRow {
+    /// Senders and the rays that end on them.
+    pub counts: Vec<(u32, u16)>,
+    /// The number of rays that the row's form factors are shares of.
+    pub rays: u32,
+}
+
+/// A block of form factors, `receivers × senders`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rows {
     senders: u32,
@@ -56,14 +67,33 @@ struct Extent {
 enum Values {
     Full(Vec<f64>),
     Single(Vec<f32>),
+    /// Rays that end on each column, and for each row, which is a group of its own, the number of all its rays.
+    Counts {
+        counts: Vec<u16>,
+        rays: Vec<u32>,
+    },
 }
 
-/// A block as plain arrays: sizes of the groups, their columns, and the numbers in one of two precisions.
+/// A block as plain arrays: sizes of the groups, their columns, and the numbers in one of three forms.
+#[derive(Default)]
 pub(crate) struct Arrays<'a> {
     pub sizes: Vec<u32>,
     pub columns: &'a [u32],
     pub full: &'a [f64],
     pub single: &'a [f32],
+    pub counts: &'a [u16],
+    pub rays: &'a [u32],
+}
+
+/// The arrays of a block that was stored.
+#[derive(Default)]
+pub(crate) struct OwnedArrays {
+    pub sizes: Vec<u32>,
+    pub columns: Vec<u32>,
+    pub full: Vec<f64>,
+    pub single: Vec<f32>,
+    pub counts: Vec<u16>,
+    pub rays: Vec<u32>,
 }
 
 impl Rows {
@@ -89,12 +119,29 @@ impl Rows {
             values: match precision {
                 Precision::Full => Values::Full(vec![]),
                 Precision::Single => Values::Single(vec![]),
+                Precision::Counts => panic!("counted rows are made by from_counts"),
             },
         };
         for group in groups {
             block.push(group);
         }
         block
+    }
+
+    /// A block with `senders` columns from counted rows, receivers in order.
+    pub fn from_counts(senders: usize, rows: impl IntoIterator<Item = CountedRow>) -> Self {
+        let mut groups = vec![Extent { receiver: 0, column: 0, value: 0 }];
+        let (mut columns, mut counts, mut rays) = (vec![], vec![], vec![]);
+        for row in rows {
+            for (column, count) in row.counts {
+                assert!((column as usize) < senders, "a column past {senders} senders");
+                columns.push(column);
+                counts.push(count);
+            }
+            rays.push(row.rays);
+            groups.push(Extent { receiver: rays.len(), column: columns.len(), value: columns.len() });
+        }
+        Self { senders: senders as u32, groups, columns, values: Values::Counts { counts, rays } }
     }
 
     fn push(&mut self, group: RowGroup) {
@@ -113,6 +160,7 @@ impl Rows {
         match &mut self.values {
             Values::Full(values) => values.extend_from_slice(&group.values),
             Values::Single(values) => values.extend(group.values.iter().map(|&value| value as f32)),
+            Values::Counts { .. } => unreachable!("counted rows are not groups of numbers"),
         }
         self.columns.extend_from_slice(&group.columns);
     }
@@ -137,6 +185,7 @@ impl Rows {
         match self.values {
             Values::Full(_) => Precision::Full,
             Values::Single(_) => Precision::Single,
+            Values::Counts { .. } => Precision::Counts,
         }
     }
 
@@ -145,6 +194,7 @@ impl Rows {
         let values = match &self.values {
             Values::Full(values) => values.len() * 8,
             Values::Single(values) => values.len() * 4,
+            Values::Counts { counts, rays } => counts.len() * 2 + rays.len() * 4,
         };
         self.groups.len() * size_of::<Extent>() + self.columns.len() * 4 + values
     }
@@ -152,7 +202,7 @@ impl Rows {
     /// Upper bound of the relative rounding error of stored entries.
     pub fn rounding(&self) -> f64 {
         match self.precision() {
-            Precision::Full => 0.0,
+            Precision::Full | Precision::Counts => 0.0,
             Precision::Single => SINGLE_ROUNDING,
         }
     }
@@ -172,7 +222,8 @@ impl Rows {
         let columns = self.columns_of(group);
         let first = self.groups[group].value;
         let end = first + self.receivers_of(group).len() * columns.len();
-        (columns, (first..end).map(|index| self.value(index)).collect())
+        let scale = self.scale_of(self.groups[group].receiver);
+        (columns, (first..end).map(|index| self.value(index) * scale).collect())
     }
 
     /// The receivers of a group.
@@ -184,8 +235,39 @@ impl Rows {
     pub fn row(&self, receiver: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let columns = self.columns_of(self.group_of(receiver));
         let first = self.range_of(receiver).start;
-        let pairs = columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k)));
+        let scale = self.scale_of(receiver);
+        let pairs =
+            columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k) * scale));
         pairs.filter(|&(_, value)| value != 0.0)
+    }
+
+    /// A row of counted rays. Panics if rows are not counted.
+    pub fn counted_row(&self, receiver: usize) -> CountedRow {
+        let Values::Counts { counts, rays } = &self.values else { panic!("rows are not counted") };
+        let counts = counts[self.range_of(receiver)].iter().copied();
+        let columns = self.columns_of(receiver).iter().copied();
+        CountedRow { counts: columns.zip(counts).collect(), rays: rays[receiver] }
+    }
+
+    /// The number of rays that a row's form factors are shares of, as a share of `rays`; 1 if rows are not counted.
+    pub fn share_of_rays(&self, receiver: usize, rays: u32) -> f64 {
+        match &self.values {
+            Values::Counts { rays: of, .. } => f64::from(of[receiver]) / f64::from(rays),
+            Values::Full(_) | Values::Single(_) => 1.0,
+        }
+    }
+
+    /// The columns before `column`, and those from it on, as two blocks of counted rows. Panics if rows are not counted.
+    pub fn parted(&self, column: usize) -> [Self; 2] {
+        let rows: Vec<CountedRow> = (0..self.receivers()).map(|row| self.counted_row(row)).collect();
+        let first = |row: &CountedRow| row.counts.partition_point(|&(c, _)| (c as usize) < column);
+        let before = rows.iter().map(|row| CountedRow { counts: row.counts[..first(row)].to_vec(), ..*row });
+        let moved = |&(c, count): &(u32, u16)| (c - column as u32, count);
+        let after = rows.iter().map(|row| {
+            let counts = row.counts[first(row)..].iter().map(moved).collect();
+            CountedRow { counts, ..*row }
+        });
+        [Self::from_counts(column, before), Self::from_counts(self.senders() - column, after)]
     }
 
     /// The senders that any receiver sees, in no order and with repetitions.
@@ -199,6 +281,11 @@ impl Rows {
         match &self.values {
             Values::Full(values) => values[range].iter().sum(),
             Values::Single(values) => values[range].iter().map(|&value| f64::from(value)).sum(),
+            // The sum of whole numbers first: a row whose rays all end on senders has exactly one.
+            Values::Counts { counts, rays } => {
+                let ended: u32 = counts[range].iter().map(|&count| u32::from(count)).sum();
+                f64::from(ended) / f64::from(rays[receiver].max(1))
+            }
         }
     }
 
@@ -213,6 +300,7 @@ impl Rows {
         match &self.values {
             Values::Full(values) => values[range].iter().filter(|&&value| value != 0.0).count(),
             Values::Single(values) => values[range].iter().filter(|&&value| value != 0.0).count(),
+            Values::Counts { .. } => range.len(),
         }
     }
 
@@ -228,6 +316,10 @@ impl Rows {
     /// a receiver of the group.
     pub fn gather_group(&self, group: usize, radiosity: &[Rgb]) -> Vec<Rgb> {
         let columns = self.columns_of(group);
+        if let Values::Counts { counts, rays } = &self.values {
+            let Extent { receiver, value, .. } = self.groups[group];
+            return vec![counted(columns, &counts[value..value + columns.len()], rays[receiver], radiosity)];
+        }
         let seen: Vec<Rgb> = columns.iter().map(|&c| radiosity[c as usize]).collect();
         let first = self.groups[group].value;
         let receivers = self.receivers_of(group);
@@ -237,6 +329,7 @@ impl Rows {
             Values::Single(values) => {
                 products(&values[range], &seen, receivers.len(), |&value| f64::from(value))
             }
+            Values::Counts { .. } => unreachable!("counted rows have returned"),
         }
     }
 
@@ -257,6 +350,10 @@ impl Rows {
                 Values::Single(values) => {
                     spread(values[range].iter().map(|&value| f64::from(value)), weight, &mut sums);
                 }
+                Values::Counts { counts, .. } => {
+                    let scale = self.scale_of(self.groups[group].receiver);
+                    spread(counts[range].iter().map(|&count| f64::from(count) * scale), weight, &mut sums);
+                }
             }
         }
         columns.iter().map(|&column| column as usize).zip(sums).collect()
@@ -270,6 +367,15 @@ impl Rows {
         match &self.values {
             Values::Full(values) => values[index],
             Values::Single(values) => f64::from(values[index]),
+            Values::Counts { counts, .. } => f64::from(counts[index]),
+        }
+    }
+
+    /// What a stored number of a row is multiplied by to be a form factor.
+    fn scale_of(&self, receiver: usize) -> f64 {
+        match &self.values {
+            Values::Full(_) | Values::Single(_) => 1.0,
+            Values::Counts { rays, .. } => 1.0 / f64::from(rays[receiver].max(1)),
         }
     }
 
@@ -278,20 +384,20 @@ impl Rows {
             .groups
             .windows(2)
             .flat_map(|g| [(g[1].receiver - g[0].receiver) as u32, (g[1].column - g[0].column) as u32]);
-        let (full, single): (&[f64], &[f32]) = match &self.values {
-            Values::Full(values) => (values, &[]),
-            Values::Single(values) => (&[], values),
-        };
-        Arrays { sizes: sizes.collect(), columns: &self.columns, full, single }
+        let arrays = Arrays { sizes: sizes.collect(), columns: &self.columns, ..Arrays::default() };
+        match &self.values {
+            Values::Full(full) => Arrays { full, ..arrays },
+            Values::Single(single) => Arrays { single, ..arrays },
+            Values::Counts { counts, rays } => Arrays { counts, rays, ..arrays },
+        }
     }
 
     pub(crate) fn from_arrays(
         senders: u32,
         precision: Precision,
-        sizes: &[u32],
-        columns: Vec<u32>,
-        (full, single): (Vec<f64>, Vec<f32>),
+        arrays: OwnedArrays,
     ) -> Result<Self, String> {
+        let OwnedArrays { sizes, columns, full, single, counts, rays } = arrays;
         let (pairs, rest) = sizes.as_chunks::<2>();
         let mut groups = vec![Extent { receiver: 0, column: 0, value: 0 }];
         for &[receivers, width] in pairs {
@@ -303,13 +409,12 @@ impl Rows {
             });
         }
         let end = groups[groups.len() - 1];
-        let values = match precision {
-            Precision::Full => Values::Full(full),
-            Precision::Single => Values::Single(single),
-        };
-        let fits = match &values {
-            Values::Full(values) => values.len() == end.value,
-            Values::Single(values) => values.len() == end.value,
+        let fits = match precision {
+            Precision::Full => full.len() == end.value,
+            Precision::Single => single.len() == end.value,
+            Precision::Counts => {
+                counts.len() == end.value && rays.len() == end.receiver && rays.len() == pairs.len()
+            }
         };
         if !rest.is_empty() || !fits || columns.len() != end.column {
             return Err("rows whose groups do not fit their arrays".into());
@@ -317,8 +422,31 @@ impl Rows {
         if let Some(column) = columns.iter().find(|&&c| c >= senders) {
             return Err(format!("sender {column} of {senders}"));
         }
-        Ok(Self { senders, groups, columns, values })
+        let values = match precision {
+            Precision::Full => Values::Full(full),
+            Precision::Single => Values::Single(single),
+            Precision::Counts => Values::Counts { counts, rays },
+        };
+        let block = Self { senders, groups, columns, values };
+        // Sums of whole numbers have no rounding.
+        match precision {
+            Precision::Counts if (0..block.receivers()).any(|i| block.row_sum(i) > 1.0) => {
+                Err("a row with more rays ended than started".into())
+            }
+            _ => Ok(block),
+        }
     }
+}
+
+/// The irradiance of a counted row, W/m²: Σ_j k_ij B_j over the number of its rays.
+fn counted(columns: &[u32], counts: &[u16], rays: u32, radiosity: &[Rgb]) -> Rgb {
+    let mut sum = [0.0; 3];
+    for (&column, &count) in columns.iter().zip(counts) {
+        let Rgb([r, g, b]) = radiosity[column as usize];
+        let count = f64::from(count);
+        sum = [sum[0] + count * r, sum[1] + count * g, sum[2] + count * b];
+    }
+    Rgb(sum) / f64::from(rays.max(1))
 }
 
 /// Adds a row's values, times its weight, to the sums of its columns.

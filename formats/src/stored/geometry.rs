@@ -2,13 +2,13 @@
 //! again from the corners by the same code, so they are bit-identical.
 
 use super::rows::{Meta, read_rows, write_rows};
-use super::{Stored, array_of, check, finite_rows};
-use crate::baked::BakedGeometry;
+use super::{Stored, array_of, check, finite_array, finite_rows};
+use crate::baked::{BakedGeometry, Escapes};
 use crate::clusters::ClusterTree;
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
-use crate::geometry::{Corners, Element, Face, Geometry};
+use crate::geometry::{Corners, Element, Face, Geometry, Patches};
 use crate::ids::{FaceId, MaterialId};
 use glam::DVec3;
 
@@ -20,6 +20,10 @@ impl Stored for BakedGeometry {
         write_elements(&self.geometry.elements, &mut writer);
         write_faces(&self.geometry.faces, &mut writer);
         writer.array("cluster children", self.geometry.clusters.children().as_flattened());
+        let patches = self.geometry.patches.as_ref();
+        writer.array("patches", patches.map_or(&[][..], |patches| &patches.of));
+        writer.array("rays", &patches.map_or(vec![], |patches| vec![patches.rays]));
+        write_escapes(&self.escapes, &mut writer);
         write_rows(&self.self_block, &mut writer);
         writer
     }
@@ -28,16 +32,47 @@ impl Stored for BakedGeometry {
         let faces = read_faces(reader)?;
         let elements = read_elements(reader, faces.len())?;
         let clusters = read_clusters(reader, &elements)?;
+        let patches = read_patches(reader, &elements)?;
         let meta = reader.meta()?;
         let self_block = read_rows(reader, meta)?;
-        check(reader, self_block.senders() == clusters.nodes(), || {
-            format!("{} columns for {} elements and clusters", self_block.senders(), clusters.nodes())
+        let geometry = Geometry { elements, faces, clusters, patches };
+        let (nodes, unknowns) = (geometry.unknowns().nodes(), geometry.unknowns().elements());
+        check(reader, self_block.senders() == nodes, || {
+            format!("{} columns for {nodes} senders", self_block.senders())
         })?;
-        check(reader, self_block.receivers() == elements.len(), || {
-            format!("{} rows for {} elements", self_block.receivers(), elements.len())
+        check(reader, self_block.receivers() == unknowns, || {
+            format!("{} rows for {unknowns} unknowns", self_block.receivers())
         })?;
-        Ok(Self { geometry: Geometry { elements, faces, clusters }, self_block })
+        let escapes = read_escapes(reader, &geometry)?;
+        Ok(Self { geometry, self_block, escapes })
     }
+}
+
+fn read_patches(reader: &mut Reader, elements: &[Element]) -> Result<Option<Patches>> {
+    let of: Vec<u32> = reader.array("patches")?;
+    match reader.array::<u32>("rays")?[..] {
+        [] => Ok(None),
+        [rays] => Patches::new(of, elements, rays).map(Some).map_err(|problem| reader.damaged(problem)),
+        _ => Err(reader.damaged("several numbers of rays")),
+    }
+}
+
+fn write_escapes(escapes: &Escapes, writer: &mut Writer) {
+    writer.array("escaped rays", &escapes.escaped);
+    writer.array("covered rays", &escapes.covered);
+    writer.array("reach of rays", escapes.reach.as_flattened());
+}
+
+fn read_escapes(reader: &mut Reader, geometry: &Geometry) -> Result<Escapes> {
+    let (rows, rays) = geometry.patches.as_ref().map_or((0, 0), |p| (p.tree.elements(), p.rays as usize));
+    let escaped = array_of::<u64>(reader, "escaped rays", rows * rays.div_ceil(64))?;
+    let covered = array_of::<u16>(reader, "covered rays", rows)?;
+    let reach = finite_array::<f32>(reader, "reach of rays")?;
+    let (boxes, rest) = reach.as_chunks::<6>();
+    check(reader, boxes.len() == rows && rest.is_empty(), || {
+        format!("{} boxes for {rows} rows", boxes.len())
+    })?;
+    Ok(Escapes { escaped, covered, reach: boxes.to_vec() })
 }
 
 fn write_elements(elements: &[Element], writer: &mut Writer) {

@@ -57,11 +57,14 @@ impl Stored for BakedLight {
         let meta: Meta = reader.meta()?;
         let reflectance = finite_lights(reader, "reflectance")?;
         let elements = reflectance.len();
-        let emission = one_an_element(reader, "emission", elements)?;
-        let radiosity = one_an_element(reader, "radiosity", elements)?;
+        let emission = lights_of(reader, "emission", elements)?;
+        // One row an unknown: an element, or a patch of them.
+        let radiosity = finite_lights(reader, "radiosity")?;
+        let unknowns = radiosity.len();
+        check(reader, unknowns <= elements, || format!("{unknowns} unknowns of {elements} elements"))?;
         let factors =
-            meta.factors.as_ref().map(|factors| read_factors(reader, factors, elements)).transpose()?;
-        let answers = read_answers(reader, &meta, elements)?;
+            meta.factors.as_ref().map(|factors| read_factors(reader, factors, unknowns)).transpose()?;
+        let answers = read_answers(reader, &meta, unknowns)?;
         let local = LocalEquilibrium { solver: meta.solver, radiosity, factors, answers };
         Ok(Self { optics: Optics { reflectance, emission }, local })
     }
@@ -79,8 +82,8 @@ fn answer_name(number: usize) -> String {
     format!("answer {number}")
 }
 
-fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<BoundaryResponses> {
-    let of = |number| one_an_element(reader, &answer_name(number), elements);
+fn read_answers(reader: &mut Reader, meta: &Meta, unknowns: usize) -> Result<BoundaryResponses> {
+    let of = |number| lights_of(reader, &answer_name(number), unknowns);
     let radiosity: Vec<Vec<Rgb>> = (0..meta.answers).map(of).collect::<Result<_>>()?;
     let matrix = finite_lights(reader, "answers' matrix")?;
     let pairs = radiosity.len() * radiosity.len();
@@ -93,25 +96,25 @@ fn read_answers(reader: &mut Reader, meta: &Meta, elements: usize) -> Result<Bou
     Ok(BoundaryResponses { radiosity, matrix, returned: meta.returned })
 }
 
-fn one_an_element(reader: &mut Reader, name: &str, elements: usize) -> Result<Vec<Rgb>> {
+fn lights_of(reader: &mut Reader, name: &str, count: usize) -> Result<Vec<Rgb>> {
     let rows = finite_lights(reader, name)?;
-    check(reader, rows.len() == elements, || format!("{} {name} of {elements} elements", rows.len()))?;
+    check(reader, rows.len() == count, || format!("{} rows of {name} instead of {count}", rows.len()))?;
     Ok(rows)
 }
 
-fn read_factors(reader: &mut Reader, meta: &FactorsMeta, elements: usize) -> Result<Factors> {
+fn read_factors(reader: &mut Reader, meta: &FactorsMeta, unknowns: usize) -> Result<Factors> {
     let FactorsMeta { channels: count, of_channel } = *meta;
     check(reader, of_channel.iter().all(|&channel| (channel as usize) < count), || {
         format!("channels {of_channel:?} of {count} factors")
     })?;
-    let channels = (0..count).map(|channel| read_lu(reader, channel, elements)).collect::<Result<_>>()?;
+    let channels = (0..count).map(|channel| read_lu(reader, channel, unknowns)).collect::<Result<_>>()?;
     Ok(Factors { channels, of_channel })
 }
 
 fn read_lu(reader: &mut Reader, channel: usize, size: usize) -> Result<Lu> {
     let packed = finite_array(reader, &factors_name(channel))?;
     let rows = array_of::<u32>(reader, &permutation_name(channel), size)?;
-    check(reader, packed.len() == size * size, || format!("{} factors of {size} elements", packed.len()))?;
+    check(reader, packed.len() == size * size, || format!("{} factors of {size} unknowns", packed.len()))?;
     check(reader, (0..size).all(|i| packed[i * (size + 1)] != 0.0), || "factors with a zero pivot".into())?;
     check(reader, is_permutation(&rows), || "a permutation that names a row twice".into())?;
     Ok(Lu { size: size as u32, packed, rows })

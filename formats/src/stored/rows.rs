@@ -4,7 +4,7 @@ use super::{Stored, finite_array};
 use crate::container::{Kind, Reader, Writer};
 use crate::error::Result;
 use crate::fingerprint::Manifest;
-use crate::rows::{Precision, Rows};
+use crate::rows::{OwnedArrays, Precision, Rows};
 use serde::{Deserialize, Serialize};
 
 /// The metadata of a block.
@@ -49,6 +49,8 @@ pub(super) fn write_rows(rows: &Rows, writer: &mut Writer) {
     writer.array("column differences", &differences);
     writer.array("form factors", arrays.full);
     writer.array("single form factors", arrays.single);
+    writer.array("counted rays", arrays.counts);
+    writer.array("rays of rows", arrays.rays);
 }
 
 /// The block that [`write_rows`] wrote.
@@ -62,6 +64,7 @@ pub(super) fn read_rows(reader: &mut Reader, meta: Meta) -> Result<Rows> {
     }
     let full = finite_array(reader, "form factors")?;
     let single = finite_array(reader, "single form factors")?;
-    Rows::from_arrays(meta.senders, meta.precision, &sizes, columns, (full, single))
-        .map_err(|problem| reader.damaged(problem))
+    let (counts, rays) = (reader.array("counted rays")?, reader.array("rays of rows")?);
+    let arrays = OwnedArrays { sizes, columns, full, single, counts, rays };
+    Rows::from_arrays(meta.senders, meta.precision, arrays).map_err(|problem| reader.damaged(problem))
 }

@@ -4,10 +4,11 @@ use crate::samples::{coupling, folder, light, manifest, part, read, read_bytes, 
 use equilux_formats::baked::{BakedGeometry, BakedLight};
 use equilux_formats::container::{FORMAT_VERSION, Kind, Reader, Writer};
 use equilux_formats::fingerprint::Manifest;
-use equilux_formats::rows::Precision;
+use equilux_formats::rows::{CountedRow, Precision};
 use equilux_formats::stored::Stored;
 use equilux_formats::{Error, FaceId, Rows};
 use proptest::prelude::*;
+use std::collections::BTreeMap;
 use std::fmt::Debug;
 use std::path::Path;
 
@@ -46,7 +47,7 @@ fn foreign_files_are_named_as_such() {
     let mut newer = bytes.clone();
     newer[8..12].copy_from_slice(&(FORMAT_VERSION + 6).to_le_bytes());
     let message = read_bytes::<Rows>(&folder, &newer).unwrap_err().to_string();
-    for part in ["changed.eqx", "format version 10", "expected version 4", "bake it again"] {
+    for part in ["changed.eqx", "format version 11", "expected version 5", "bake it again"] {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
     }
 
@@ -82,7 +83,7 @@ fn by_hand(count: u64, length: impl Fn(u64) -> u64) -> Vec<u8> {
     let entry = Entry { name: "numbers", number: "f64", count, length: length(frame.len() as u64), checksum };
     let index = Index { manifest: manifest(), arrays: vec![entry] };
     let messages = [rmp_serde::to_vec_named(&index).unwrap(), vec![0xC0]].concat();
-    let header = [&b"EQUILUX\0\x04\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
+    let header = [&b"EQUILUX\0\x05\0\0\0COUP"[..], &(messages.len() as u64).to_le_bytes()].concat();
     let checksum = *blake3::hash(&[&header[..], &messages].concat()).as_bytes();
     [&header[..], &checksum, &messages, &frame].concat()
 }
@@ -153,6 +154,8 @@ fn contents_that_break_a_promise_are_refused() {
         writer.array("column differences", &differences);
         writer.array("form factors", &[0.5, 0.5]);
         writer.array::<f32>("single form factors", &[]);
+        writer.array::<u16>("counted rays", &[]);
+        writer.array::<u32>("rays of rows", &[]);
         writer.write_to(&path).unwrap();
         let message = read::<Rows>(&path).unwrap_err().to_string();
         assert!(message.contains(problem), "{problem:?} is not in {message:?}");
@@ -166,7 +169,39 @@ fn rows(senders: u32) -> impl Strategy<Value = Rows> {
     })
 }
 
+fn counted_rows(senders: u32) -> impl Strategy<Value = Rows> {
+    let row = (proptest::collection::btree_map(0..senders, 1..100u16, 0..senders as usize), 0..500u32);
+    let counted = |(counts, lost): (BTreeMap<u32, u16>, u32)| {
+        let rays = lost + counts.values().map(|&count| u32::from(count)).sum::<u32>();
+        CountedRow { counts: counts.into_iter().collect(), rays }
+    };
+    proptest::collection::vec(row, 0..20)
+        .prop_map(move |rows| Rows::from_counts(senders as usize, rows.into_iter().map(counted)))
+}
+
+/// A row that says that more rays ended than it has is damage, not light.
+#[test]
+fn counted_rows_above_one_are_refused() {
+    let rows = Rows::from_counts(3, [CountedRow { counts: vec![(0, 200), (2, 57)], rays: 256 }]);
+    let folder = folder();
+    let (path, _) = written(&folder, &rows);
+    let message = read::<Rows>(&path).unwrap_err().to_string();
+    assert!(message.contains("more rays ended than started"), "{message}");
+}
+
 proptest! {
+    #[test]
+    fn counted_blocks_come_back_and_can_be_parted(rows in counted_rows(30), column in 0usize..=30) {
+        let folder = folder();
+        let (path, _) = written(&folder, &rows);
+        prop_assert_eq!(&read::<Rows>(&path).unwrap(), &rows);
+        let [before, after] = rows.parted(column);
+        for i in 0..rows.receivers() {
+            let both: Vec<_> = before.row(i).chain(after.row(i).map(|(c, f)| (c + column, f))).collect();
+            prop_assert_eq!(both, rows.row(i).collect::<Vec<_>>());
+        }
+    }
+
     #[test]
     fn blocks_come_back(rows in rows(30)) {
         let folder = folder();

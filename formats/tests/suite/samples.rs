@@ -1,6 +1,8 @@
 //! Sample values of every kind of file, and helpers to write and read them.
 
-use equilux_formats::baked::{BakedGeometry, BakedLight, BoundaryResponses, Factors, LocalEquilibrium, Lu};
+use equilux_formats::baked::{
+    BakedGeometry, BakedLight, BoundaryResponses, Escapes, Factors, LocalEquilibrium, Lu,
+};
 use equilux_formats::container::Reader;
 use equilux_formats::fingerprint::{Content, Manifest};
 use equilux_formats::rows::{Precision, RowGroup};
@@ -32,7 +34,8 @@ pub fn part() -> BakedGeometry {
     let areas: Vec<f64> = elements.iter().map(|element| element.area).collect();
     let clusters = ClusterTree::new(&areas, vec![[0, 1]]).unwrap();
     let self_block = Rows::from_rows(3, [vec![(1, 0.1 + 0.2)], vec![(0, 1e-300), (1, 0.0)]]);
-    BakedGeometry { geometry: Geometry { elements, faces, clusters }, self_block }
+    let geometry = Geometry { elements, faces, clusters, patches: None };
+    BakedGeometry { geometry, self_block, escapes: Escapes::default() }
 }
 
 pub fn light() -> BakedLight {
