@@ -22,7 +22,7 @@
 //! let element_size = Some(ElementSize::Metres(1.0));
 //! let prepared = prepare(&scene, &Preparation { element_size, resolution: EXACT, ..Preparation::default() })?;
 //! let (store, monitor) = (Store::open(folder.path())?, Monitor::default());
-//! let oven = Oven { store: &store, file: &scene.file, resolution: EXACT, monitor: &monitor };
+//! let oven = Oven { store: &store, file: &scene.file, resolution: prepared.resolution, monitor: &monitor };
 //! for part in &prepared.parts {
 //!     let baked = oven.bake(part)?.part;
 //!     println!("{}: {} form factors", baked.name, baked.self_block.stored());
@@ -68,7 +68,7 @@ pub use gltf_import::{import_scene, scenes_in};
 pub use monitor::{Monitor, Progress, Step};
 pub use oven::batch::{Batch, FileOutcome, PartOutcome, bake_files, find_scenes};
 pub use oven::cached::Origin;
-pub use oven::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
+pub use oven::prepare::{Division, Preparation, Prepared, PreparedPart, RowMethod, prepare};
 pub use oven::{Baked, Oven};
 pub use treecode::{Audience, EXACT, Request, Resolution, Timed, block};
 pub use world::World;

@@ -3,8 +3,8 @@
 use super::length::in_metres;
 use crate::elements::ElementSize;
 use crate::elements::bisect::Cut;
-use crate::oven::prepare::{Division, Preparation, TOLERANCE};
-use crate::treecode::Resolution;
+use crate::oven::prepare::{Division, Preparation, RowMethod, TOLERANCE};
+use crate::treecode::{Resolution, rays_for_tolerance};
 use clap::Args;
 use equilux_formats::LocalSolver;
 use std::path::PathBuf;
@@ -22,10 +22,17 @@ pub struct SceneOptions {
     /// Largest edge of an element in metres, or `mesh` for the mesh's own faces [default: suits the scene]
     #[arg(long, value_name = "METRES|mesh", value_parser = element_size)]
     pub element_size: Option<ElementSize>,
-    /// Approximate relative error of the result caused by merging distant elements into clusters with one exact form
-    /// factor; 0 keeps a form factor for every element
+    /// Approximate relative error of the result: with rays by their number, with exact rows by merging distant elements
+    /// into clusters with one exact form factor; 0 keeps an exact form factor for every element
     #[arg(long, value_name = "EPS", default_value_t = TOLERANCE, value_parser = tolerance)]
     pub tolerance: f64,
+    /// How rows of form factors are computed
+    #[arg(long, value_name = "METHOD", default_value = "auto")]
+    pub rows: RowMethod,
+    /// Rays from each element, where rows are by rays: a power of two from 64 to 16384 [default: 64, 256, 1024 or 4096,
+    /// as --tolerance asks]
+    #[arg(long, value_name = "N", value_parser = rays)]
+    pub rays: Option<u32>,
     /// Divide the scene into this many parts: repeatedly halve the largest at the median of its longest axis
     #[arg(long, value_name = "N", conflicts_with = "cut", value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub bisect: Option<u32>,
@@ -55,6 +62,8 @@ impl SceneOptions {
             element_size: self.element_size,
             division,
             resolution: Resolution::for_tolerance(self.tolerance),
+            rows: self.rows,
+            rays: self.rays.unwrap_or_else(|| rays_for_tolerance(self.tolerance)),
             local_solver: self.local_solver,
         }
     }
@@ -81,6 +90,13 @@ pub fn element_size(text: &str) -> Result<ElementSize, String> {
 
 fn cut(text: &str) -> Result<Cut, String> {
     text.parse().map_err(|error| format!("{error}{}", in_metres(text)))
+}
+
+fn rays(text: &str) -> Result<u32, String> {
+    match text.parse::<u32>() {
+        Ok(rays) if (64..=16384).contains(&rays) && rays.is_power_of_two() => Ok(rays),
+        _ => Err("a number of rays is a power of two from 64 to 16384".into()),
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

@@ -16,7 +16,7 @@ const COVERED_WITHIN: f64 = 0.1;
 /// The geometry of these elements and faces; elements are sorted into the order of their hierarchy.
 pub fn geometry(elements: Vec<Element>, faces: Vec<Face>) -> Geometry {
     let (order, clusters) = hierarchy(&elements);
-    Geometry { elements: order.iter().map(|&i| elements[i]).collect(), faces, clusters }
+    Geometry { elements: order.iter().map(|&i| elements[i]).collect(), faces, clusters, patches: None }
 }
 
 /// The order of these elements in their hierarchy, as indices into `elements`, and the hierarchy.

@@ -4,6 +4,7 @@ pub mod bisect;
 pub mod clusters;
 pub mod cuts;
 pub mod merge;
+pub mod patches;
 
 use crate::geometry::tolerance::FLATNESS;
 use equilux_formats::{

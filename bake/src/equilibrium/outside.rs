@@ -10,6 +10,7 @@ use super::system::LocalSystem;
 use crate::geometry::aabb::Aabb;
 use equilux_formats::baked::BoundaryResponses;
 use equilux_formats::{Element, Geometry, Rgb};
+use glam::DVec3;
 
 /// Relative residual of a response. Responses accelerate the exchange and do not affect its result, so a rough solution
 /// suffices.
@@ -21,18 +22,40 @@ const MIN_NEW_SHARE: f64 = 1e-3;
 /// A smaller share that a receiver sees outside its own part is rounding of its row sum.
 const MIN_OPEN_SHARE: f64 = 1e-12;
 
-/// The irradiance of an unobstructed element under one light from outside.
-type OutsideLight = Box<dyn Fn(&Element) -> f64>;
+/// Where an unknown lies, and its normal.
+struct Place {
+    centroid: DVec3,
+    normal: DVec3,
+}
+
+/// The irradiance of an unobstructed unknown under one light from outside.
+type OutsideLight = Box<dyn Fn(&Place) -> f64>;
+
+/// The places of the unknowns; of several elements the mean by area, which for a normal need not be a unit vector.
+fn places(geometry: &Geometry) -> Vec<Place> {
+    let place = |element: &Element| Place { centroid: element.centroid, normal: element.normal };
+    let Some(patches) = &geometry.patches else { return geometry.elements.iter().map(place).collect() };
+    let mut places: Vec<Place> =
+        (0..patches.tree.elements()).map(|_| Place { centroid: DVec3::ZERO, normal: DVec3::ZERO }).collect();
+    for (&patch, element) in patches.of.iter().zip(&geometry.elements) {
+        let share = element.area / patches.tree.area_of(patch as usize);
+        let place = &mut places[patch as usize];
+        place.centroid += element.centroid * share;
+        place.normal += element.normal * share;
+    }
+    places
+}
 
 /// The boundary responses of a part with this system and geometry. Empty if no light from outside arrives, or the part
 /// reflects none.
 pub fn boundary_responses(system: &LocalSystem, geometry: &Geometry) -> BoundaryResponses {
-    let areas: Vec<f64> = geometry.elements.iter().map(|element| element.area).collect();
+    let unknowns = geometry.unknowns();
+    let areas: Vec<f64> = (0..unknowns.elements()).map(|i| unknowns.area_of(i)).collect();
+    let places = places(geometry);
     let open: Vec<f64> = (0..areas.len()).map(|i| open(1.0 - system.block.row_sum(i))).collect();
     let mut answers = BoundaryResponses::default();
-    for (number, light) in lights(&geometry.elements).into_iter().enumerate() {
-        let reflected =
-            |i: usize| -> Rgb { system.reflectance[i] * (open[i] * light(&geometry.elements[i])) };
+    for (number, light) in lights(&places).into_iter().enumerate() {
+        let reflected = |i: usize| -> Rgb { system.reflectance[i] * (open[i] * light(&places[i])) };
         let sources: Vec<Rgb> = (0..areas.len()).map(reflected).collect();
         if sources.iter().all(|source| *source == Rgb::BLACK) {
             continue;
@@ -54,13 +77,13 @@ fn open(share: f64) -> f64 {
 }
 
 /// The seven lights.
-fn lights(elements: &[Element]) -> Vec<OutsideLight> {
-    let around = Aabb::around(elements.iter().map(|element| element.centroid));
+fn lights(places: &[Place]) -> Vec<OutsideLight> {
+    let around = Aabb::around(places.iter().map(|place| place.centroid));
     let (centre, extent) = (around.centre(), around.size().max_element().max(f64::MIN_POSITIVE) / 2.0);
     let mut lights: Vec<OutsideLight> = vec![Box::new(|_| 1.0)];
     for axis in 0..3 {
-        lights.push(Box::new(move |element| (element.centroid[axis] - centre[axis]) / extent));
-        lights.push(Box::new(move |element| element.normal[axis]));
+        lights.push(Box::new(move |place: &Place| (place.centroid[axis] - centre[axis]) / extent));
+        lights.push(Box::new(move |place: &Place| place.normal[axis]));
     }
     lights
 }

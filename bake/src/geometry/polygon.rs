@@ -23,6 +23,32 @@ pub enum Clipped {
     Piece(Polygon),
 }
 
+/// The distance of a point from a convex polygon.
+pub fn distance(point: DVec3, corners: &[DVec3]) -> f64 {
+    let triangles = corners.windows(2).skip(1).map(|edge| [corners[0], edge[0], edge[1]]);
+    triangles.map(|triangle| triangle_distance(point, triangle)).fold(f64::INFINITY, f64::min)
+}
+
+fn triangle_distance(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    let within = [(a, b), (b, c), (c, a)].iter().all(|&(p, q)| normal.dot((q - p).cross(point - p)) >= 0.0);
+    if within && normal != DVec3::ZERO {
+        return normal.dot(point - a).abs();
+    }
+    let to_edge = |(p, q): (DVec3, DVec3)| {
+        let along = ((point - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
+        (p + (q - p) * along - point).length()
+    };
+    [(a, b), (b, c), (c, a)].map(to_edge).into_iter().fold(f64::INFINITY, f64::min)
+}
+
+/// The area of a planar convex polygon, m².
+pub fn area(polygon: &[DVec3]) -> f64 {
+    let origin = polygon[0];
+    let double: DVec3 = polygon.windows(2).skip(1).map(|e| (e[0] - origin).cross(e[1] - origin)).sum();
+    double.length() / 2.0
+}
+
 /// The part of `polygon` where `distance` (an affine function of the point) is positive. Corners on the plane belong to
 /// both sides, and a polygon that only touches the plane is not cut. Only signs decide, and a cut point lies between
 /// the corners of its edge. A piece no higher than the rounding of its corners counts as an edge: [`Clipped::None`].

@@ -6,6 +6,7 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::disjoint_sets::DisjointSets;
 use crate::geometry::point_key::point_key;
+use crate::geometry::polygon::distance;
 use crate::geometry::shells::{
     closed_shells, groups_by_edges, is_balanced, triangles, volume_and_area, winding_number,
 };
@@ -93,22 +94,4 @@ fn is_closed_outwards(group: &[usize], polygons: &[&[DVec3]]) -> bool {
     let double_area = |corners| triangles(corners).map(|[a, b, c]| (b - a).cross(c - a)).sum::<DVec3>();
     let (volume, area) = volume_and_area(own().map(|corners| (corners, false)));
     own().map(double_area).sum::<DVec3>().length() <= CLOSED * 2.0 * area && volume > 0.0
-}
-
-/// The distance of a point from a convex polygon.
-fn distance(point: DVec3, corners: &[DVec3]) -> f64 {
-    triangles(corners).map(|triangle| triangle_distance(point, triangle)).fold(f64::INFINITY, f64::min)
-}
-
-fn triangle_distance(point: DVec3, [a, b, c]: [DVec3; 3]) -> f64 {
-    let normal = (b - a).cross(c - a).normalize_or_zero();
-    let within = [(a, b), (b, c), (c, a)].iter().all(|&(p, q)| normal.dot((q - p).cross(point - p)) >= 0.0);
-    if within && normal != DVec3::ZERO {
-        return normal.dot(point - a).abs();
-    }
-    let to_edge = |(p, q): (DVec3, DVec3)| {
-        let along = ((point - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
-        (p + (q - p) * along - point).length()
-    };
-    [(a, b), (b, c), (c, a)].map(to_edge).into_iter().fold(f64::INFINITY, f64::min)
 }

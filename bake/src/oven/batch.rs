@@ -3,7 +3,7 @@
 use crate::gltf_import::{import_scene, is_gltf};
 use crate::monitor::Monitor;
 use crate::oven::prepare::PreparedPart;
-use crate::oven::prepare::{Preparation, prepare};
+use crate::oven::prepare::{Preparation, Prepared, prepare};
 use crate::oven::{Baked, Oven};
 use equilux_formats::rows::RowSumDefect;
 use equilux_formats::store::Evicted;
@@ -147,9 +147,9 @@ fn bake_file(
     let scene = import_scene(file)?;
     outcome.notes.clone_from(&scene.notes);
     outcome.sources.clone_from(&scene.sources);
-    let oven = Oven { store, file, resolution: wanted.resolution, monitor };
-    let parts = prepare(&scene, wanted)?.parts;
-    monitor.expect(parts.iter().map(|part| part.geometry.elements.len() as f64).sum());
+    let Prepared { parts, resolution, .. } = prepare(&scene, wanted)?;
+    let oven = Oven { store, file, resolution, monitor };
+    monitor.expect(parts.iter().map(|part| part.geometry.unknowns().elements() as f64).sum());
     for part in &parts {
         let start = Instant::now();
         let baked = oven.bake(part);

@@ -30,13 +30,14 @@ pub const SKY_CELLS: usize = 12;
 pub fn drop_unused(files: &[PathBuf], wanted: &Preparation, store: &Store) -> Result<Evicted> {
     let mut keys = HashSet::new();
     for file in files {
-        keys.extend(keys_of(&prepare(&import_scene(file)?, wanted)?, wanted.resolution, store));
+        keys.extend(keys_of(&prepare(&import_scene(file)?, wanted)?, store));
     }
     store.keep_only(&keys)
 }
 
 /// The keys that `assemble` looks up for the parts of a scene and their couplings.
-pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashSet<Key> {
+pub fn keys_of(scene: &Prepared, store: &Store) -> HashSet<Key> {
+    let resolution = scene.resolution;
     let part_keys: Vec<Key> =
         scene.parts.iter().map(|part| geometry_manifest(part, resolution).key()).collect();
     let mut keys = HashSet::new();
@@ -47,7 +48,7 @@ pub fn keys_of(scene: &Prepared, resolution: Resolution, store: &Store) -> HashS
     let parts: Vec<BakedKey> = part_keys
         .iter()
         .zip(&scene.parts)
-        .map(|(&key, part)| BakedKey { key, senders: part.geometry.clusters.nodes() })
+        .map(|(&key, part)| BakedKey { key, senders: part.geometry.unknowns().nodes() })
         .collect();
     for number in 0..scene.instances.len() {
         let key = |what| placed_manifest(&scene.instances, &parts, resolution, number, what).key();
@@ -135,6 +136,12 @@ pub fn placed_manifest(
         .setting("kernel", KERNEL_VERSION)
         .setting("resolution", resolution)
         .digest("the part", parts[instances[instance].part.index()].key);
+    if resolution.rays.is_some() {
+        // Rays that leave the scene meet cells of the sky, which does not turn with the instance.
+        let turn = DAffine3::from_mat3(instances[instance].placement.matrix3);
+        let part = parts[instances[instance].part.index()];
+        manifest = manifest.setting("orientation", RelativePlacement::new(part, turn));
+    }
     for (number, seen) in placements_from(instances, parts, instance) {
         manifest = manifest.detail(format!("instance {number} ({})", instances[number].name), seen);
     }

@@ -12,10 +12,13 @@ use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::outside::boundary_responses;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
+use crate::rays::counts::{AloneRows, alone};
+use crate::rays::samples::Samples;
+use crate::rays::surfaces::Surfaces;
 use crate::treecode::{Request, Resolution, block};
 use crate::world::World;
 use cached::{Origin, cached, foreseen};
-use equilux_formats::baked::{BakedGeometry, BakedLight, LocalEquilibrium};
+use equilux_formats::baked::{BakedGeometry, BakedLight, Escapes, LocalEquilibrium};
 use equilux_formats::fingerprint::{Content, Digest, Key, Manifest};
 use equilux_formats::{
     BakedPart, Element, Error, Geometry, Instance, LocalSolver, MaterialId, Optics, Result, Rgb, Rows, Store,
@@ -27,7 +30,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
-pub const KERNEL_VERSION: u32 = 6;
+pub const KERNEL_VERSION: u32 = 7;
 
 /// A baked part, with origins and times.
 #[derive(Debug)]
@@ -76,14 +79,12 @@ impl Oven<'_> {
     pub fn bake(&self, part: &PreparedPart) -> Result<Baked> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
-        let (mut form_factor_time, receivers) = (Duration::ZERO, part.geometry.elements.len());
+        let (mut form_factor_time, receivers) = (Duration::ZERO, part.geometry.unknowns().elements());
         let found = cached(self.store, &self.name(part, "form factors"), &manifest, self.monitor, || {
             self.monitor.begin(format!("form factors of {}", part.name), receivers, receivers as f64);
-            let world = World::new([(&part.geometry, DAffine3::IDENTITY)]);
-            let request = Request::of_self(&world, &[0], self.resolution);
-            let timed = block(&request, self.monitor)?;
-            form_factor_time = timed.time;
-            Ok(BakedGeometry { geometry: without_materials(&part.geometry), self_block: timed.block })
+            let (self_block, escapes);
+            (self_block, escapes, form_factor_time) = self.rows_alone(&part.geometry)?;
+            Ok(BakedGeometry { geometry: without_materials(&part.geometry), self_block, escapes })
         });
         let (geometry, form_factors) = found?;
         if form_factors.is_reused() {
@@ -108,10 +109,24 @@ impl Oven<'_> {
             tints: part.tints.clone(),
             materials: part.materials.clone(),
             self_block: geometry.self_block,
+            escapes: geometry.escapes,
             local,
         };
         let light_time = start.elapsed();
         Ok(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time })
+    }
+
+    /// The rows of a part alone, what their rays may still meet, and the time that they took, summed over threads.
+    fn rows_alone(&self, geometry: &Geometry) -> Result<(Rows, Escapes, Duration)> {
+        if let Some(patches) = &geometry.patches {
+            let start = Instant::now();
+            let AloneRows { self_block, escapes } =
+                alone(&Surfaces::new(geometry), &Samples::new(patches.rays), self.monitor)?;
+            return Ok((self_block, escapes, start.elapsed() * rayon::current_num_threads() as u32));
+        }
+        let world = World::new([(geometry, DAffine3::IDENTITY)]);
+        let timed = block(&Request::of_self(&world, &[0], self.resolution), self.monitor)?;
+        Ok((timed.block, Escapes::default(), timed.time))
     }
 
     /// The local equilibrium of a repainted instance, and its origin; none if the reflectance is that of the part, so
@@ -147,8 +162,9 @@ impl Oven<'_> {
         let name = self.named(part.name, part.what);
         let (light, origin) = cached(self.store, &name, &manifest, self.monitor, || {
             self.monitor.begin(format!("local equilibrium of {}", part.name), 0, 0.0);
-            if let Some(element) = endless_in_block(optics, part.self_block, &part.geometry.clusters) {
-                return Err(self.endless_light(part.name, &material(element)));
+            let of_unknowns = part.geometry.optics_of_unknowns(optics);
+            if let Some(unknown) = endless_in_block(&of_unknowns, part.self_block, part.geometry.unknowns()) {
+                return Err(self.endless_light(part.name, &material(part.geometry.element_of(unknown))));
             }
             let local = local_equilibrium(part.self_block, part.geometry, optics, part.solver);
             Ok(BakedLight { local, optics: optics.clone() })
@@ -201,9 +217,9 @@ pub fn local_equilibrium(
     optics: &Optics,
     solver: LocalSolver,
 ) -> LocalEquilibrium {
-    let clusters = &geometry.clusters;
-    let factors = factorise(block, clusters, &optics.reflectance, solver);
-    let system = LocalSystem::new(block, clusters, &optics.reflectance, solver, factors.as_ref());
+    let (unknowns, optics) = (geometry.unknowns(), geometry.optics_of_unknowns(optics));
+    let factors = factorise(block, unknowns, &optics.reflectance, solver);
+    let system = LocalSystem::new(block, unknowns, &optics.reflectance, solver, factors.as_ref());
     let radiosity = system.solve(&optics.emission, &optics.emission);
     let answers = boundary_responses(&system, geometry);
     LocalEquilibrium { solver, radiosity, factors, answers }
@@ -241,6 +257,7 @@ fn without_materials(geometry: &Geometry) -> Geometry {
         elements: geometry.elements.iter().map(bare).collect(),
         faces: geometry.faces.clone(),
         clusters: geometry.clusters.clone(),
+        patches: geometry.patches.clone(),
     }
 }
 
@@ -252,6 +269,9 @@ fn geometry_digest(geometry: &Geometry) -> Digest {
     }
     for face in &geometry.faces {
         content = content.f64s(&face.corners.iter().flat_map(|p| p.to_array()).collect::<Vec<_>>());
+    }
+    for patch in geometry.patches.iter().flat_map(|patches| &patches.of) {
+        content = content.bytes(patch.to_le_bytes());
     }
     content.digest()
 }

@@ -3,11 +3,12 @@
 
 use crate::elements::bisect::{Cut, bisect, cut_all};
 use crate::elements::clusters;
+use crate::elements::patches::patches;
 use crate::elements::{ElementSize, Panels, area, default_size, optics};
 use crate::equilibrium::default_solver;
 use crate::geometry::aabb::Aabb;
 use crate::textures::tints;
-use crate::treecode::Resolution;
+use crate::treecode::{EXACT, Resolution, rays_for_tolerance};
 use crate::world::World;
 use equilux_formats::texture::TexturedTriangle;
 use equilux_formats::{
@@ -24,8 +25,12 @@ pub struct Preparation {
     pub element_size: Option<ElementSize>,
     /// How the scene is divided into parts.
     pub division: Division,
-    /// The resolution of form factors.
+    /// The resolution of exact form factors.
     pub resolution: Resolution,
+    /// How rows are computed.
+    pub rows: RowMethod,
+    /// Rays a row, where rows are counted rays: a multiple of 64.
+    pub rays: u32,
     /// Local solver; none to let the part's size decide. A part's own `local_solver` comes first.
     pub local_solver: Option<LocalSolver>,
 }
@@ -37,6 +42,8 @@ impl Default for Preparation {
             element_size: None,
             division: Division::Authored,
             resolution: Resolution::for_tolerance(TOLERANCE),
+            rows: RowMethod::Auto,
+            rays: rays_for_tolerance(TOLERANCE),
             local_solver: None,
         }
     }
@@ -44,6 +51,34 @@ impl Default for Preparation {
 
 /// The default tolerance of form factors, a share of the mean light.
 pub const TOLERANCE: f64 = 0.01;
+
+/// How rows of form factors are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum RowMethod {
+    /// Exact rows with --tolerance 0 and for a few large faces, otherwise rays
+    #[default]
+    Auto,
+    /// Exact form factors at the centre of each element; the cost of a row grows with the faces in view
+    Exact,
+    /// A hemisphere of rays from each element; the cost of a row depends on their number
+    Rays,
+}
+
+/// Scenes of no more faces than this get exact rows: they take no longer than rays, and have no noise.
+const FEW_FACES: usize = 64;
+
+impl Preparation {
+    /// The resolution for a scene of so many faces.
+    fn resolution_for(&self, faces: usize) -> Resolution {
+        let by_rays = match self.rows {
+            RowMethod::Auto => self.resolution != EXACT && faces > FEW_FACES,
+            RowMethod::Exact => false,
+            RowMethod::Rays => true,
+        };
+        Resolution { rays: by_rays.then_some(self.rays), ..self.resolution }
+    }
+}
 
 /// How a scene is divided into parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,12 +100,20 @@ pub struct Prepared {
     pub instances: Vec<Instance>,
     /// The element size of parts without one of their own.
     pub element_size: ElementSize,
+    /// The resolution of form factors, and whether rows are counted rays.
+    pub resolution: Resolution,
 }
 
 impl Prepared {
     /// Number of elements of the scene.
     pub fn elements(&self) -> usize {
         self.instances.iter().map(|instance| self.parts[instance.part.index()].geometry.elements.len()).sum()
+    }
+
+    /// Number of unknowns of the scene: elements, or patches of them.
+    pub fn unknowns(&self) -> usize {
+        let unknowns = |instance: &Instance| self.parts[instance.part.index()].geometry.unknowns().elements();
+        self.instances.iter().map(unknowns).sum()
     }
 }
 
@@ -104,26 +147,30 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     let scales = largest_scales(scene);
     let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene, &scales));
     refuse_lost_digits(scene, element_size, &scales)?;
+    let faces = |instance: &Instance| scene.parts[instance.part.index()].surfaces.len();
+    let resolution = wanted.resolution_for(scene.instances.iter().map(faces).sum());
     let mut parts = Vec::new();
     for (part, &scale) in scene.parts.iter().zip(&scales) {
         let size = part.element_size.map_or(element_size, ElementSize::Metres);
         let panels = Panels::of(part, size.in_units_of(scale));
         refuse_too_many(scene, part, panels.elements(), size)?;
-        let geometry = panels.geometry();
+        let mut geometry = panels.geometry();
+        geometry.patches =
+            resolution.rays.map(|rays| patches(&geometry.elements, size.in_units_of(scale), rays));
         let tints = tints(&geometry, &part.materials, &part.textured);
         let solver = part.local_solver.or(wanted.local_solver);
         parts.push(PreparedPart {
             name: part.name.clone(),
             optics: optics(&geometry, &part.materials, &tints),
             tints,
-            solver: solver.unwrap_or_else(|| default_solver(geometry.elements.len())),
+            solver: solver.unwrap_or_else(|| default_solver(geometry.unknowns().elements())),
             materials: part.materials.clone(),
             element_size: size,
             unit: scale,
             geometry,
         });
     }
-    let authored = Prepared { parts, instances: scene.instances.clone(), element_size };
+    let authored = Prepared { parts, instances: scene.instances.clone(), element_size, resolution };
     Ok(match &wanted.division {
         Division::Authored => authored,
         Division::Bisect(count) => divided(&authored, wanted, scene, |whole| bisect(whole, *count)),
@@ -225,7 +272,9 @@ fn divided(
     for (number, cell) in divide(whole).into_iter().enumerate() {
         let name = format!("cell {}", number + 1);
         let tints = tints(&cell, &materials, &textured);
-        let (geometry, origin) = recentred(cell);
+        let (mut geometry, origin) = recentred(cell);
+        let rays = authored.resolution.rays;
+        geometry.patches = rays.map(|rays| patches(&geometry.elements, authored.element_size, rays));
         instances.push(Instance {
             name: name.clone(),
             part: PartId::from_index(number),
@@ -233,7 +282,7 @@ fn divided(
             emission_scale: 1.0,
             repainted: vec![],
         });
-        let solver = wanted.local_solver.unwrap_or_else(|| default_solver(geometry.elements.len()));
+        let solver = wanted.local_solver.unwrap_or_else(|| default_solver(geometry.unknowns().elements()));
         parts.push(PreparedPart {
             name,
             optics: optics(&geometry, &materials, &tints),
@@ -245,7 +294,7 @@ fn divided(
             solver,
         });
     }
-    Prepared { parts, instances, element_size: authored.element_size }
+    Prepared { parts, instances, element_size: authored.element_size, resolution: authored.resolution }
 }
 
 /// All instances in scene coordinates, with one list of materials, as each instance has them.
@@ -290,6 +339,7 @@ fn recentred(geometry: Geometry) -> (Geometry, DVec3) {
         elements: geometry.elements.iter().map(element).collect(),
         faces: geometry.faces.iter().map(face).collect(),
         clusters: geometry.clusters.clone(),
+        patches: geometry.patches.clone(),
     };
     (moved, origin)
 }

@@ -28,7 +28,7 @@ use equilux_formats::{Error, Result, Rows};
 use std::time::Duration;
 
 pub use request::{Audience, Request};
-pub use resolution::{EXACT, MISSED, Resolution};
+pub use resolution::{EXACT, MISSED, Resolution, rays_for_tolerance};
 
 /// A block with statistics of its computation.
 #[derive(Debug)]

@@ -4,7 +4,7 @@ pub mod occluders;
 
 use crate::geometry::aabb::Aabb;
 use crate::geometry::planes;
-use crate::geometry::polygon::{Polygon, convex_hull};
+use crate::geometry::polygon::{Polygon, area, convex_hull};
 use crate::geometry::solids::lit_behind;
 use crate::geometry::tolerance::SAME_AREA;
 use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
@@ -274,10 +274,4 @@ fn union(left: &Sender, right: &Sender, normal: DVec3) -> Polygon {
     let hull = convex_hull(left.polygon.iter().chain(&right.polygon).copied(), normal);
     let area = area(&hull);
     if (area - left.area - right.area).abs() <= SAME_AREA * area { hull } else { Polygon::new() }
-}
-
-fn area(polygon: &[DVec3]) -> f64 {
-    let origin = polygon[0];
-    let double: DVec3 = polygon.windows(2).skip(1).map(|e| (e[0] - origin).cross(e[1] - origin)).sum();
-    double.length() / 2.0
 }

@@ -1,0 +1,432 @@
+//! Rows as whole numbers: what the rays of an unknown end on, first in its own part and then in a scene.
+//!
+//! A scene adds to the row of the part alone what escaped rays meet, and replaces what now stands behind something else. It
+//! is the same row as from nothing, since a ray meets its own part in the same way in both.
+
+use super::samples::Samples;
+use super::scenery::{Landing, Scenery};
+use super::surfaces::{End, Surfaces};
+use super::wide_tree::Ray;
+use crate::geometry::aabb::Aabb;
+use crate::monitor::Monitor;
+use equilux_formats::baked::Escapes;
+use equilux_formats::rows::CountedRow;
+use equilux_formats::{Error, Result, Rgb, Rows};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// The rows of a part on its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AloneRows {
+    /// F_kk, `unknowns × unknowns`.
+    pub self_block: Rows,
+    /// What the rays may still meet in a scene.
+    pub escapes: Escapes,
+}
+
+/// Traces all rows of a part on its own. Fails if the monitor was stopped.
+pub fn alone(surfaces: &Surfaces, samples: &Samples, monitor: &Monitor) -> Result<AloneRows> {
+    let rows = traced(surfaces.unknowns(), monitor, |unknown, scratch| {
+        // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
+        pulp::Arch::new().dispatch(Alone { surfaces, samples, unknown, scratch })
+    })?;
+    let mut escapes = Escapes::default();
+    let mut counted = Vec::with_capacity(rows.len());
+    for row in rows {
+        escapes.escaped.extend(row.escaped);
+        escapes.covered.push(row.covered);
+        escapes.reach.push(row.reach);
+        counted.push(CountedRow { counts: row.counts, rays: samples.rays() as u32 - u32::from(row.covered) });
+    }
+    Ok(AloneRows { self_block: Rows::from_counts(surfaces.unknowns(), counted), escapes })
+}
+
+/// What the columns of a scene's rows stand for: the unknowns of all instances, then the cells of the sky.
+#[derive(Clone, Copy)]
+pub struct SceneColumns<'a> {
+    /// The first column of each instance.
+    pub first: &'a [u32],
+    /// Number of columns of instances.
+    pub unknowns: usize,
+    /// Number of cells of the sky.
+    pub cells: usize,
+    /// The cell of the sky in a direction of the scene.
+    pub cell: &'a (dyn Fn(DVec3) -> u32 + Sync),
+}
+
+impl std::fmt::Debug for SceneColumns<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} unknowns and {} cells", self.unknowns, self.cells)
+    }
+}
+
+/// The rows of an instance in a scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedRows {
+    /// F_kk, if anything may stand between surfaces of the instance.
+    pub self_block: Option<Rows>,
+    /// F_kl for l ≠ k and then the cells of the sky, `unknowns × columns of the scene`.
+    pub others: Rows,
+    /// Rays traced for each row.
+    pub traced: Vec<u32>,
+}
+
+/// Whether another instance may stand between surfaces of this one, or hold the start of one of its rays.
+pub fn may_be_blocked(scenery: &Scenery, instance: usize, escapes: &Escapes) -> bool {
+    let near = scenery.boxes_near(instance, whole_reach(escapes));
+    escapes.reach.iter().any(|row| near.iter().any(|other| other.meets(&reach(row))))
+}
+
+/// Traces what the rays of an instance meet in a scene beyond their own part. `baked`: its rows alone. Fails if the monitor
+/// was stopped.
+pub fn placed(
+    scenery: &Scenery,
+    samples: &Samples,
+    instance: usize,
+    (baked, escapes): (&Rows, &Escapes),
+    columns: SceneColumns,
+    monitor: &Monitor,
+) -> Result<PlacedRows> {
+    let near = scenery.boxes_near(instance, whole_reach(escapes));
+    let may_be_blocked = |unknown: usize| {
+        let reach = reach(&escapes.reach[unknown]);
+        near.iter().any(|other| other.meets(&reach))
+    };
+    let unknowns = scenery.surfaces_of(instance).unknowns();
+    let rows = traced(unknowns, monitor, |unknown, scratch| {
+        let row = Placed { scenery, samples, instance, unknown, columns, scratch };
+        let covered = escapes.covered[unknown];
+        let escaped = escapes.of_row(unknown, samples.rays() as u32);
+        if may_be_blocked(unknown) {
+            pulp::Arch::new().dispatch(Whole(row))
+        } else if escaped.iter().all(|&bits| bits == 0) {
+            PlacedRow { covered, ..PlacedRow::default() }
+        } else {
+            pulp::Arch::new().dispatch(Escaped { row, escaped, covered })
+        }
+    })?;
+    let rays = |row: &PlacedRow| samples.rays() as u32 - u32::from(row.covered);
+    let own = |(unknown, row): (usize, &PlacedRow)| {
+        let counts = row.own.clone().map(|counts| CountedRow { counts, rays: rays(row) });
+        counts.unwrap_or_else(|| baked.counted_row(unknown))
+    };
+    let is_corrected = rows.iter().any(|row| row.own.is_some());
+    let corrected = is_corrected.then(|| Rows::from_counts(unknowns, rows.iter().enumerate().map(own)));
+    let traced = rows.iter().map(|row| row.traced).collect();
+    let others = rows.into_iter().map(|row| CountedRow { rays: rays(&row), counts: row.others });
+    let others = Rows::from_counts(columns.unknowns + columns.cells, others);
+    Ok(PlacedRows { self_block: corrected, others, traced })
+}
+
+/// Irradiance of a row, W/m², as several independent sets of its rays find it: the mean over the rays of `light` of what they end
+/// on and their direction in the scene.
+pub fn replicas<const N: usize>(
+    scenery: &Scenery,
+    samples: &Samples,
+    (instance, unknown): (usize, usize),
+    light: impl Fn(Option<Landing>, DVec3) -> Rgb,
+) -> [Rgb; N] {
+    let emitters = scenery.surfaces_of(instance).emitters(unknown);
+    let (near, placement) = (emitters.bounds().diagonal(), scenery.placement_of(instance));
+    std::array::from_fn(|replica| {
+        let mut rays = Vec::new();
+        emitters.rays(samples, unknown as u32 ^ (replica as u32) << 28, &mut rays);
+        let (mut sum, mut open) = (Rgb::BLACK, 0.0);
+        for ray in &rays {
+            let landing = scenery.land(instance, ray, near);
+            if landing.is_none_or(|landing| landing.end != End::Covered) {
+                sum += light(landing, placement.transform_vector3(ray.direction));
+                open += 1.0;
+            }
+        }
+        if open > 0.0 { sum / open } else { sum }
+    })
+}
+
+/// Reused memory of a thread.
+#[derive(Debug, Default)]
+struct Scratch {
+    rays: Vec<Ray>,
+    own: Vec<u32>,
+    others: Vec<u32>,
+}
+
+/// The rows of all unknowns, in order, on all threads.
+fn traced<T: Send>(
+    unknowns: usize,
+    monitor: &Monitor,
+    row: impl Fn(usize, &mut Scratch) -> T + Sync,
+) -> Result<Vec<T>> {
+    let found: Vec<Option<T>> = (0..unknowns)
+        .into_par_iter()
+        .map_init(Scratch::default, |scratch, unknown| {
+            if monitor.stopped() {
+                return None;
+            }
+            monitor.advance(1);
+            Some(row(unknown, scratch))
+        })
+        .collect();
+    found.into_iter().collect::<Option<Vec<T>>>().ok_or(Error::Stopped)
+}
+
+/// The row of an unknown in its part alone.
+struct Alone<'a> {
+    surfaces: &'a Surfaces,
+    samples: &'a Samples,
+    unknown: usize,
+    scratch: &'a mut Scratch,
+}
+
+struct AloneRow {
+    counts: Vec<(u32, u16)>,
+    covered: u16,
+    escaped: Vec<u64>,
+    reach: [f32; 6],
+}
+
+impl pulp::NullaryFnOnce for Alone<'_> {
+    type Output = AloneRow;
+
+    #[inline(always)]
+    fn call(self) -> AloneRow {
+        let Self { surfaces, samples, unknown, scratch: Scratch { rays, own, .. } } = self;
+        surfaces.emitters(unknown).rays(samples, unknown as u32, rays);
+        own.clear();
+        let near = surfaces.emitters(unknown).bounds().diagonal();
+        let (mut covered, mut escaped) = (0, vec![0; rays.len().div_ceil(64)]);
+        let mut reach = Aabb::EMPTY;
+        for (number, ray) in rays.iter().enumerate() {
+            reach = reach.union(Aabb { low: ray.origin, high: ray.origin });
+            let hit = surfaces.tree.first(ray, f64::INFINITY);
+            // In a scene something may cover the start of a ray that escapes.
+            let end = ray.at(hit.map_or(near, |hit| hit.t));
+            reach = reach.union(Aabb { low: end, high: end });
+            let Some(hit) = hit else {
+                escaped[number / 64] |= 1 << (number % 64);
+                continue;
+            };
+            match surfaces.end(ray, &hit, near) {
+                End::Element(element) => own.push(surfaces.unknown_of(element)),
+                End::Covered => covered += 1,
+                End::Black => {}
+            }
+        }
+        AloneRow { counts: tallied(own), covered, escaped, reach: rounded(reach) }
+    }
+}
+
+/// The row of an unknown in a scene.
+struct Placed<'a> {
+    scenery: &'a Scenery,
+    samples: &'a Samples,
+    instance: usize,
+    unknown: usize,
+    columns: SceneColumns<'a>,
+    scratch: &'a mut Scratch,
+}
+
+#[derive(Default)]
+struct PlacedRow {
+    /// Rays that end on the own part, if that was traced again.
+    own: Option<Vec<(u32, u16)>>,
+    others: Vec<(u32, u16)>,
+    covered: u16,
+    traced: u32,
+}
+
+impl Placed<'_> {
+    /// Counts where a ray ends.
+    #[inline(always)]
+    fn land(&mut self, ray: &Ray, landing: Option<Landing>, covered: &mut u16) {
+        let Scratch { own, others, .. } = &mut self.scratch;
+        match landing {
+            None => {
+                let direction = self.scenery.placement_of(self.instance).transform_vector3(ray.direction);
+                others.push(self.columns.unknowns as u32 + (self.columns.cell)(direction));
+            }
+            Some(Landing { end: End::Covered, .. }) => *covered += 1,
+            Some(Landing { end: End::Black, .. }) => {}
+            Some(Landing { end: End::Element(element), instance, .. }) => {
+                let unknown = self.scenery.surfaces_of(instance).unknown_of(element);
+                if instance == self.instance {
+                    own.push(unknown);
+                } else {
+                    others.push(self.columns.first[instance] + unknown);
+                }
+            }
+        }
+    }
+
+    /// The distance up to which a black back covers the start of a ray.
+    fn near(&self) -> f64 {
+        self.scenery.surfaces_of(self.instance).emitters(self.unknown).bounds().diagonal()
+    }
+
+    /// The unknown's rays, and empty lists for where they end.
+    #[inline(always)]
+    fn begin(&mut self) -> Vec<Ray> {
+        let mut rays = std::mem::take(&mut self.scratch.rays);
+        let surfaces = self.scenery.surfaces_of(self.instance);
+        surfaces.emitters(self.unknown).rays(self.samples, self.unknown as u32, &mut rays);
+        self.scratch.own.clear();
+        self.scratch.others.clear();
+        rays
+    }
+}
+
+/// All rays of a row.
+struct Whole<'a>(Placed<'a>);
+
+impl pulp::NullaryFnOnce for Whole<'_> {
+    type Output = PlacedRow;
+
+    #[inline(always)]
+    fn call(self) -> PlacedRow {
+        let Self(mut row) = self;
+        let (rays, near, mut covered) = (row.begin(), row.near(), 0);
+        for ray in &rays {
+            let landing = row.scenery.land(row.instance, ray, near);
+            row.land(ray, landing, &mut covered);
+        }
+        let traced = rays.len() as u32;
+        row.scratch.rays = rays;
+        let (own, others) = (tallied(&mut row.scratch.own), tallied(&mut row.scratch.others));
+        PlacedRow { own: Some(own), others, covered, traced }
+    }
+}
+
+/// The rays of a row that leave their own part.
+struct Escaped<'a> {
+    row: Placed<'a>,
+    escaped: &'a [u64],
+    covered: u16,
+}
+
+impl pulp::NullaryFnOnce for Escaped<'_> {
+    type Output = PlacedRow;
+
+    #[inline(always)]
+    fn call(self) -> PlacedRow {
+        let Self { mut row, escaped, mut covered } = self;
+        let (rays, near, mut traced) = (row.begin(), row.near(), 0);
+        for (number, ray) in rays.iter().enumerate() {
+            if escaped[number / 64] >> (number % 64) & 1 == 1 {
+                let landing = row.scenery.land_after(row.instance, ray, None, near);
+                row.land(ray, landing, &mut covered);
+                traced += 1;
+            }
+        }
+        row.scratch.rays = rays;
+        PlacedRow { own: None, others: tallied(&mut row.scratch.others), covered, traced }
+    }
+}
+
+/// How often each number occurs, numbers rising.
+fn tallied(hits: &mut [u32]) -> Vec<(u32, u16)> {
+    hits.sort_unstable();
+    hits.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u16)).collect()
+}
+
+/// A box in f32, no smaller.
+fn rounded(bounds: Aabb) -> [f32; 6] {
+    let [a, b, c] = bounds.low.to_array().map(|x| (x as f32).next_down());
+    let [d, e, f] = bounds.high.to_array().map(|x| (x as f32).next_up());
+    [a, b, c, d, e, f]
+}
+
+/// The box around what the rays of all rows reach.
+fn whole_reach(escapes: &Escapes) -> Aabb {
+    escapes.reach.iter().map(reach).fold(Aabb::EMPTY, Aabb::union)
+}
+
+fn reach(&[a, b, c, d, e, f]: &[f32; 6]) -> Aabb {
+    Aabb { low: DVec3::new(a.into(), b.into(), c.into()), high: DVec3::new(d.into(), e.into(), f.into()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::shapes::{part, room, similarity, soup};
+    use super::*;
+    use proptest::prelude::*;
+    use std::sync::{Arc, LazyLock};
+
+    static SAMPLES: LazyLock<Samples> = LazyLock::new(|| Samples::new(256));
+
+    fn placed_rows(scenery: &Scenery, instance: usize, baked: &AloneRows) -> PlacedRows {
+        let counts = scenery.unknowns();
+        let first: Vec<u32> =
+            counts.iter().scan(0, |sum, n| Some(std::mem::replace(sum, *sum + *n as u32))).collect();
+        let unknowns = counts.iter().sum();
+        let columns = SceneColumns { first: &first, unknowns, cells: 1, cell: &|_| 0 };
+        let alone = (&baked.self_block, &baked.escapes);
+        placed(scenery, &SAMPLES, instance, alone, columns, &Monitor::default()).expect("not stopped")
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        #[test]
+        fn rows_of_a_closed_room_sum_to_the_number_of_rays(faces in room(), placement in similarity()) {
+            let surfaces = Arc::new(Surfaces::new(&part(&faces)));
+            let baked = alone(&surfaces, &SAMPLES, &Monitor::default()).expect("not stopped");
+            let scenery = Scenery::new([(surfaces, placement)]);
+            let rows = placed_rows(&scenery, 0, &baked);
+            prop_assert_eq!(rows.self_block, None);
+            prop_assert_eq!(rows.others.stored(), 0);
+            for unknown in 0..baked.self_block.receivers() {
+                prop_assert_eq!(baked.self_block.row_sum(unknown), 1.0);
+                prop_assert_eq!(baked.escapes.covered[unknown], 0);
+                // No element of a flat face sees itself.
+                prop_assert!(baked.self_block.row(unknown).all(|(column, _)| column != unknown));
+            }
+        }
+
+        /// What a part knows of itself and what a scene adds make the row that rays find in the whole scene, in whole numbers, for
+        /// any number of turned, mirrored and scaled things in a room, whatever stands in what.
+        #[test]
+        fn a_row_is_what_its_rays_find_in_the_whole_scene(
+            faces in room(),
+            things in proptest::collection::vec((prop_oneof![soup(), room()], similarity()), 1..4),
+        ) {
+            let others = things.iter().map(|(faces, placement)| (Arc::new(Surfaces::new(&part(faces))), *placement));
+            let own = (Arc::new(Surfaces::new(&part(&faces))), glam::DAffine3::IDENTITY);
+            let scenery = Scenery::new(std::iter::once(own).chain(others));
+            for instance in 0..=things.len() {
+                let surfaces = scenery.surfaces_of(instance);
+                let baked = alone(surfaces, &SAMPLES, &Monitor::default()).expect("not stopped");
+                let rows = placed_rows(&scenery, instance, &baked);
+                let own = rows.self_block.as_ref().unwrap_or(&baked.self_block);
+                for unknown in 0..surfaces.unknowns() {
+                    let whole = whole(&scenery, instance, unknown);
+                    prop_assert_eq!(own.counted_row(unknown), whole.0, "own row {} of {}", unknown, instance);
+                    prop_assert_eq!(rows.others.counted_row(unknown), whole.1, "row {} of {}", unknown, instance);
+                }
+            }
+        }
+    }
+
+    /// A row from nothing: what each ray lands on, one after the other.
+    fn whole(scenery: &Scenery, instance: usize, unknown: usize) -> (CountedRow, CountedRow) {
+        let counts = scenery.unknowns();
+        let first = |instance: usize| counts[..instance].iter().sum::<usize>() as u32;
+        let emitters = scenery.surfaces_of(instance).emitters(unknown);
+        let (mut rays, mut own, mut others, mut covered) = (vec![], vec![], vec![], 0);
+        emitters.rays(&SAMPLES, unknown as u32, &mut rays);
+        for ray in &rays {
+            match scenery.land(instance, ray, emitters.bounds().diagonal()) {
+                None => others.push(first(counts.len())),
+                Some(Landing { end: End::Covered, .. }) => covered += 1,
+                Some(Landing { end: End::Black, .. }) => {}
+                Some(Landing { end: End::Element(element), instance: met, .. }) if met == instance => {
+                    own.push(element)
+                }
+                Some(Landing { end: End::Element(element), instance: met, .. }) => {
+                    others.push(first(met) + element)
+                }
+            }
+        }
+        let row = |mut hits: Vec<u32>| CountedRow { counts: tallied(&mut hits), rays: 256 - covered };
+        (row(own), row(others))
+    }
+}

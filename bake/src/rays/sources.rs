@@ -1,0 +1,268 @@
+//! The form factor from an unknown to a source, a polygon that shines: the contour integral averaged over the unknown, times the
+//! share of shadow rays between the two that nothing stops. Light of small, bright sources arrives without the noise that a
+//! hemisphere of rays would give it.
+//!
+//! ```text
+//! F = (1/A) ∫_A contour(x, source) dx × Σ g V / Σ g,   g = cosθ cosθ' / d²
+//! ```
+//!
+//! over pairs of points, one on the unknown and one on the source (Cohen & Wallace 1993, §4.4 for the contour; Campbell & Fussell
+//! 1990 for the product).
+
+use super::hemisphere::Emitters;
+use super::scenery::Scenery;
+use super::sobol;
+use super::wide_tree::Ray;
+use crate::form_factor::contour::form_factor;
+use crate::geometry::polygon::{Clipped, clip, distance};
+use equilux_formats::{Element, Rgb};
+use glam::DVec3;
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+/// How many shadow rays a form factor takes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Rays to the source that sends an unknown the most: at first, and in all where they do not agree.
+    most: [f64; 2],
+    /// Rays to sources that send it little.
+    fewest: [f64; 2],
+}
+
+impl Effort {
+    /// For emitting surfaces.
+    pub const DIRECT: Self = Self { most: [64.0, 256.0], fewest: [4.0, 16.0] };
+    /// For suns, which cast sharp shadows.
+    pub const SUN: Self = Self { most: [64.0, 64.0], fewest: [64.0, 64.0] };
+    /// For what is reflected, which is weaker and has more sources.
+    pub const REFLECTED: Self = Self { most: [16.0, 32.0], fewest: [2.0, 2.0] };
+}
+
+/// Where the first rays agree, one receiver in so many goes on, and its result counts as often: else what few rays meet
+/// would be left out on average.
+const GO_ON: u32 = 8;
+
+/// The finest grid of points at which the contour is taken, along a side.
+const FINEST: usize = 16;
+
+/// Below this many there is one point.
+const ONE_POINT: f64 = 0.3;
+
+/// Diameters of an unknown over its distance from the source, for each two points of the grid.
+const POINTS_PER_NEARNESS: f64 = 1.5;
+
+/// A surface that shines: a polygon, or several that are no plane together.
+#[derive(Debug)]
+pub struct Source {
+    elements: Vec<Element>,
+    places: Emitters,
+    area: f64,
+}
+
+impl Source {
+    /// The surface of these elements, in scene coordinates.
+    pub fn new(elements: Vec<Element>) -> Self {
+        let (places, area) = (Emitters::new(&elements), elements.iter().map(|element| element.area).sum());
+        Self { elements, places, area }
+    }
+
+    /// The polygon, unless there are several.
+    fn polygon(&self) -> Option<&Element> {
+        if let [polygon] = self.elements.as_slice() { Some(polygon) } else { None }
+    }
+}
+
+/// The form factors from an unknown of an instance to those of `sources` that it sees, with their places among them.
+pub fn form_factors(
+    scenery: &Scenery,
+    (instance, unknown): (usize, usize),
+    sources: &[(u32, &Source)],
+    effort: Effort,
+) -> Vec<(u32, f64)> {
+    let receiver = Receiver { scenery, instance, unknown };
+    // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
+    pulp::Arch::new().dispatch(Seen { receiver, sources, effort })
+}
+
+/// The mean of `light` over so many places on an unknown of an instance: of a place and its normal, in scene coordinates.
+pub fn mean_over(
+    scenery: &Scenery,
+    (instance, unknown): (usize, usize),
+    places: u32,
+    light: impl Fn(DVec3, DVec3) -> Rgb,
+) -> Rgb {
+    let receiver = Receiver { scenery, instance, unknown };
+    let at = |k: u32| {
+        let [u, v, ..] = self::places(k, receiver.seed(0));
+        let (place, normal) = receiver.place(u, v);
+        light(place, normal)
+    };
+    (0..places).map(at).fold(Rgb::BLACK, |sum, light| sum + light) / f64::from(places)
+}
+
+struct Seen<'a> {
+    receiver: Receiver<'a>,
+    sources: &'a [(u32, &'a Source)],
+    effort: Effort,
+}
+
+impl pulp::NullaryFnOnce for Seen<'_> {
+    type Output = Vec<(u32, f64)>;
+
+    #[inline(always)]
+    fn call(self) -> Vec<(u32, f64)> {
+        let Self { receiver, sources, effort } = self;
+        let mut open: Vec<(u32, &Source, f64)> = Vec::with_capacity(sources.len());
+        for &(number, source) in sources {
+            let unoccluded = receiver.unoccluded(source);
+            if unoccluded > 0.0 {
+                open.push((number, source, unoccluded));
+            }
+        }
+        let most = open.iter().map(|&(_, _, f)| f).fold(0.0, f64::max);
+        let mut seen = Vec::with_capacity(open.len());
+        for (number, source, unoccluded) in open {
+            // Errors of independent sources add up as squares, so the weaker need fewer rays.
+            let importance = (unoccluded / most).sqrt();
+            let rays = [0, 1].map(|k| (effort.most[k] * importance).max(effort.fewest[k]).ceil() as u32);
+            let value = match source.polygon() {
+                Some(_) => unoccluded * receiver.visible((number, source), rays),
+                None => receiver.counted((number, source), rays[1]),
+            };
+            if value != 0.0 {
+                seen.push((number, value));
+            }
+        }
+        seen
+    }
+}
+
+/// An unknown of an instance.
+struct Receiver<'a> {
+    scenery: &'a Scenery,
+    instance: usize,
+    unknown: usize,
+}
+
+impl Receiver<'_> {
+    /// A place on it and the normal there, in scene coordinates, from two numbers in 0..1.
+    #[inline(always)]
+    fn place(&self, u: f64, v: f64) -> (DVec3, DVec3) {
+        let (point, normal) = self.scenery.surfaces_of(self.instance).emitters(self.unknown).place(u, v);
+        let placement = self.scenery.placement_of(self.instance);
+        (placement.transform_point3(point), placement.transform_vector3(normal).normalize())
+    }
+
+    /// The average of the contour integral over it, nothing being in the way. Of several polygons a rough value, which decides
+    /// on the number of rays alone.
+    fn unoccluded(&self, source: &Source) -> f64 {
+        let Some(polygon) = source.polygon() else { return self.roughly(source) };
+        let corners = polygon.corners.as_slice();
+        let emitters = self.scenery.surfaces_of(self.instance).emitters(self.unknown);
+        let placement = self.scenery.placement_of(self.instance);
+        let bounds = emitters.bounds();
+        let centre = placement.transform_point3(bounds.centre());
+        let size = placement.transform_vector3(bounds.size()).length();
+        let apart = (distance(centre, corners) - size / 2.0).max(size / 16.0);
+        let nearness = POINTS_PER_NEARNESS * size / apart;
+        let pairs = (nearness.ceil() as usize).clamp(1, FINEST / 2);
+        // Two Gauss points in each interval; one if it is small and far.
+        let points = if nearness < ONE_POINT { 1 } else { 2 * pairs };
+        let at = |k: usize| {
+            let off = if k.is_multiple_of(2) { 0.211_324_865_405_187_1 } else { 0.788_675_134_594_812_9 };
+            if points == 1 { 0.5 } else { ((k / 2) as f64 + off) / pairs as f64 }
+        };
+        let mut sum = 0.0;
+        for k in 0..points * points {
+            let (point, normal) = self.place(at(k % points), at(k / points));
+            if polygon.normal.dot(point - corners[0]) <= 0.0 {
+                continue;
+            }
+            let seen: smallvec::SmallVec<[DVec3; 8]> = corners.iter().map(|&p| p - point).collect();
+            sum += match clip(&seen, |p| normal.dot(p)) {
+                Clipped::All => form_factor(&seen, normal),
+                Clipped::Piece(above) => form_factor(&above, normal),
+                Clipped::None => 0.0,
+            };
+        }
+        sum / (points * points) as f64
+    }
+
+    /// A/π d², at most 1.
+    fn roughly(&self, source: &Source) -> f64 {
+        let emitters = self.scenery.surfaces_of(self.instance).emitters(self.unknown);
+        let centre = self.scenery.placement_of(self.instance).transform_point3(emitters.bounds().centre());
+        let apart = (source.places.bounds().centre() - centre).length_squared();
+        source.area / (source.area + PI * apart)
+    }
+
+    /// The share of the light of a polygon that arrives, by so many rays at first and in all.
+    #[inline(always)]
+    fn visible(&self, (number, source): (u32, &Source), [first, all]: [u32; 2]) -> f64 {
+        let seed = self.seed(number);
+        let (mut open, mut sum) = (0.0, 0.0);
+        // What the first rays agree on, and how much a later disagreement counts.
+        let (mut agreed, mut weight_of_more) = (0.0, 1.0);
+        for k in 0..all {
+            if k == first && sum > 0.0 && (open == 0.0 || open == sum) {
+                agreed = open / sum;
+                if !seed.is_multiple_of(GO_ON) {
+                    return agreed;
+                }
+                weight_of_more = f64::from(GO_ON);
+            }
+            let (weight, arriving) = self.shadow_ray(source, places(k, seed));
+            sum += weight;
+            open += arriving;
+        }
+        if sum > 0.0 { agreed + (open / sum - agreed) * weight_of_more } else { 0.0 }
+    }
+
+    /// The form factor of several polygons by so many rays.
+    #[inline(always)]
+    fn counted(&self, (number, source): (u32, &Source), rays: u32) -> f64 {
+        let seed = self.seed(number);
+        let sum: f64 = (0..rays).map(|k| self.shadow_ray(source, places(k, seed)).1).sum();
+        source.area / PI * sum / f64::from(rays)
+    }
+
+    /// g of a pair of points, and g V.
+    #[inline(always)]
+    fn shadow_ray(&self, source: &Source, [a, b, c, d]: [f64; 4]) -> (f64, f64) {
+        let ((from, normal), (to, normal_there)) = (self.place(a, b), source.places.place(c, d));
+        let along = to - from;
+        let (cosine, cosine_there) = (normal.dot(along), -normal_there.dot(along));
+        if cosine <= 0.0 || cosine_there <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let weight = cosine * cosine_there / along.length_squared().powi(2);
+        let is_blocked = self.scenery.is_between(&Ray { origin: from, direction: along });
+        (weight, if is_blocked { 0.0 } else { weight })
+    }
+
+    #[inline(always)]
+    fn seed(&self, source: u32) -> u32 {
+        sobol::hash(self.unknown as u32 ^ sobol::hash(source ^ 0x2545_f491))
+    }
+}
+
+/// Scrambled point sets, and points in each.
+const SETS: (u32, u32) = (16, 256);
+
+/// Pairs of places on a receiver and a source, made once.
+static PLACES: LazyLock<Vec<[f64; 4]>> = LazyLock::new(|| {
+    let set = |set: u32| (0..SETS.1).map(move |k| sobol::point(k, sobol::hash(set ^ 0x9e37_79b9)));
+    (0..SETS.0).flat_map(set).collect()
+});
+
+/// The kth pair of places of a seed, as four numbers in 0..1: a point of one of the sets, shifted.
+#[inline(always)]
+fn places(k: u32, seed: u32) -> [f64; 4] {
+    let point = PLACES[(seed % SETS.0 * SETS.1 + k % SETS.1) as usize];
+    let shifts = [sobol::hash(seed), sobol::hash(seed ^ 0x68bc_21eb)];
+    std::array::from_fn(|d| {
+        let shift = f64::from(shifts[d / 2] >> (16 * (d % 2)) & 0xffff) / 65536.0;
+        let moved = point[d] + shift;
+        if moved >= 1.0 { moved - 1.0 } else { moved }
+    })
+}
