@@ -3,9 +3,14 @@
 use equilux_bake::elements::repainted;
 use equilux_bake::oven::cached::Origin;
 use equilux_bake::oven::{Baked, Oven};
+use equilux_bake::rays::scenery::Scenery;
+use equilux_bake::rays::surfaces::Surfaces;
 use equilux_bake::world::World;
 use equilux_formats::baked::LocalEquilibrium;
-use equilux_formats::{Instance, Optics, Result};
+use equilux_formats::{Instance, Optics, Result, Rgb};
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// The parts of a scene at their placements.
 #[derive(Debug)]
@@ -16,6 +21,10 @@ pub struct PlacedParts {
     pub parts: Vec<Baked>,
     /// The instances with their placements.
     pub instances: Vec<Instance>,
+    /// All instances for rays, if rows are counted rays.
+    pub scenery: Option<Arc<Scenery>>,
+    /// The columns of each instance in the blocks of the scene: its unknowns, then its clusters.
+    columns: Vec<Range<usize>>,
     /// The local equilibrium of each instance whose repainting changes its optics; none where that of the part holds.
     pub relit: Vec<Option<Relit>>,
 }
@@ -34,7 +43,49 @@ impl PlacedParts {
     pub fn new(parts: Vec<Baked>, instances: Vec<Instance>) -> Self {
         let world = stage(&parts, &instances);
         let relit = instances.iter().map(|_| None).collect();
-        Self { world, parts, instances, relit }
+        let by_rays = parts.iter().any(|baked| baked.part.geometry.patches.is_some());
+        let scenery = by_rays.then(|| Arc::new(scenery(&parts, &instances)));
+        let nodes = instances.iter().map(|i| parts[i.part.index()].part.geometry.unknowns().nodes());
+        let columns = ranges(nodes);
+        Self { world, parts, instances, scenery, columns, relit }
+    }
+
+    /// Whether rows are counted rays.
+    pub fn is_by_rays(&self) -> bool {
+        self.scenery.is_some()
+    }
+
+    /// The columns of an instance in the blocks of the scene.
+    pub fn columns_of(&self, instance: usize) -> Range<usize> {
+        self.columns[instance].clone()
+    }
+
+    /// Number of columns of all instances.
+    pub fn columns(&self) -> usize {
+        self.columns.last().map_or(0, |last| last.end)
+    }
+
+    /// The instance that a column stands for.
+    pub fn instance_of_column(&self, column: usize) -> usize {
+        self.columns.partition_point(|own| own.end <= column)
+    }
+
+    /// The unknown of an element of an instance, both in the numbers of the part.
+    pub fn unknown_of(&self, instance: usize, element: usize) -> usize {
+        let patches = self.part_of(instance).part.geometry.patches.as_ref();
+        patches.map_or(element, |patches| patches.of[element] as usize)
+    }
+
+    /// The means over an instance's unknowns of values of its elements.
+    pub fn means_of_unknowns(&self, instance: usize, values: &[Rgb]) -> Vec<Rgb> {
+        let geometry = &self.part_of(instance).part.geometry;
+        let patches = geometry.patches.as_ref();
+        patches.map_or_else(|| values.to_vec(), |patches| patches.means(&geometry.elements, values))
+    }
+
+    /// Number of unknowns of an instance.
+    pub fn unknowns_of(&self, instance: usize) -> usize {
+        self.part_of(instance).part.geometry.unknowns().elements()
     }
 
     /// A new copy of the world, to which objects can be added.
@@ -80,6 +131,22 @@ impl PlacedParts {
         optics.emission.iter_mut().for_each(|emission| *emission = emission.map(|e| e * scale));
         optics
     }
+}
+
+/// Consecutive ranges of these lengths.
+fn ranges(lengths: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
+    lengths
+        .scan(0, |end, length| {
+            *end += length;
+            Some(*end - length..*end)
+        })
+        .collect()
+}
+
+fn scenery(parts: &[Baked], instances: &[Instance]) -> Scenery {
+    let surfaces = |baked: &Baked| Arc::new(Surfaces::new(&baked.part.geometry));
+    let surfaces: Vec<Arc<Surfaces>> = parts.par_iter().map(surfaces).collect();
+    Scenery::new(instances.iter().map(|i| (surfaces[i.part.index()].clone(), i.placement)))
 }
 
 fn stage(parts: &[Baked], instances: &[Instance]) -> World {

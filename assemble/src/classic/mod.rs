@@ -22,10 +22,10 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::cached::Origin;
-use equilux_bake::oven::prepare::{Division, Preparation, Prepared, PreparedPart, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, Prepared, PreparedPart, RowMethod, prepare};
 use equilux_bake::oven::{Baked, geometry_manifest};
 use equilux_bake::treecode::EXACT;
-use equilux_formats::baked::{BoundaryResponses, LocalEquilibrium};
+use equilux_formats::baked::{BoundaryResponses, Escapes, LocalEquilibrium};
 use equilux_formats::{BakedPart, Error, LightUnits, Optics, Result, Rgb, Rows, Store};
 use glam::DVec3;
 use serde::Serialize;
@@ -128,7 +128,8 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
         element_size: job.element_size,
         division: Division::Authored,
         resolution: EXACT,
-        local_solver: None,
+        rows: RowMethod::Exact,
+        ..Preparation::default()
     };
     let placed = unbaked(prepare(&scene, &preparation)?);
     let sky = job.sky.as_ref().map(Sky::read).transpose()?;
@@ -140,8 +141,9 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     let store = Store::open(temporary_cache.path())?;
     let coupler = Coupler { placed: &placed, store: &store, file: &job.scene, resolution: EXACT, monitor };
     let direct = direct(&coupler, &lights)?;
-    let each: Vec<Optics> =
-        (0..placed.instances.len()).map(|k| driven(&placed.optics_of(k), &direct.irradiance[k])).collect();
+    let each: Vec<Optics> = (0..placed.instances.len())
+        .map(|k| driven(&placed.optics_of(k), &direct.irradiance[k], &direct.apart[k]))
+        .collect();
     let mut solved = solve(job, &placed, &joined(&each), monitor)?;
     with_direct(&mut solved.irradiance, &direct.irradiance);
     let (solve, solve_cpu, peak) = (start.elapsed().as_secs_f64(), cpu_seconds(), peak_rss());
@@ -218,6 +220,7 @@ fn without_light(part: PreparedPart) -> Baked {
     Baked {
         part: BakedPart {
             self_block: Rows::from_rows(part.geometry.clusters.nodes(), vec![vec![]; receivers]),
+            escapes: Escapes::default(),
             name: part.name,
             geometry: part.geometry,
             optics: part.optics,

@@ -10,6 +10,7 @@ use crate::run::job::Job;
 use crate::solve::settings::SolveSettings;
 use clap::Args;
 use equilux_bake::cli::options::SceneOptions;
+use equilux_bake::oven::prepare::{Preparation, RowMethod};
 use equilux_formats::LightUnits;
 use std::path::PathBuf;
 
@@ -34,8 +35,8 @@ pub struct AssemblyOptions {
     /// rounding [default: 1e-6, with --verify 0]
     #[arg(long, value_name = "BOUND", value_parser = values::error_bound)]
     error: Option<f64>,
-    /// Measure the error of --tolerance in about this many exact rows, or in all rows, which proves a sharp bound; 0
-    /// measures nothing
+    /// Measure the error in about this many rows: of --tolerance with exact rows, in all of which a sharp bound is proved, and
+    /// the noise with rows by rays; 0 measures nothing
     #[arg(long, value_name = "N|all", default_value = "256", value_parser = values::exact_rows)]
     exact_rows: ExactRows,
     /// Start from the light of the last run with --warm instead of darkness, and store this run's light: fewer rounds
@@ -68,8 +69,8 @@ pub struct AssemblyOptions {
     /// Also solve the classic whole-scene matrix and print the largest difference
     #[arg(long)]
     verify: bool,
-    /// Also write the irradiance at the points of this table (columns x, y, z, nx, ny, nz), gathered with exact
-    /// visibility: points.csv
+    /// Also write the irradiance at the points of this table (columns x, y, z, nx, ny, nz), gathered anew at each:
+    /// points.csv
     #[arg(long, value_name = "FILE.csv")]
     points: Option<PathBuf>,
     /// Write a table of all elements, their optics and their light
@@ -81,6 +82,13 @@ pub struct AssemblyOptions {
 }
 
 impl AssemblyOptions {
+    /// The choices about elements and parts. The classic matrix is exact, so what is compared with it is too.
+    fn preparation(&self) -> Preparation {
+        let chosen = self.options.preparation();
+        let rows = if self.verify { RowMethod::Exact } else { chosen.rows };
+        Preparation { rows, ..chosen }
+    }
+
     /// The job, without explanations and without a picture from a camera.
     pub fn job(&self) -> Job {
         let default = if self.verify { Goal { error: 0.0, ..Goal::default() } } else { Goal::default() };
@@ -88,7 +96,7 @@ impl AssemblyOptions {
             scene: self.scene.clone().expect("a task has a scene"),
             settings: SolveSettings {
                 cache: self.options.cache.clone(),
-                preparation: self.options.preparation(),
+                preparation: self.preparation(),
                 light_units: self.light_units,
                 sky: self.sky.clone(),
                 method: self.exchange,

@@ -12,6 +12,7 @@ use equilux_bake::oven::keys::{
     BakedKey, CORRECTED, COUPLING, RelativePlacement, placed_manifest, placements_from, sky_manifest,
 };
 use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
+use equilux_bake::rays::counts::may_be_blocked;
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::baked::{BakedLight, LocalEquilibrium};
 use equilux_formats::fingerprint::{Key, Manifest};
@@ -25,8 +26,10 @@ use std::time::Duration;
 /// The blocks of an instance.
 #[derive(Debug)]
 pub struct Coupled {
-    /// F_kl for all l ≠ k, `elements of k × all nodes of the scene`.
+    /// F_kl for all l ≠ k, `unknowns of k × columns of the scene`.
     pub coupling: Rows,
+    /// Form factors to the cells of the sky, `unknowns of k × cells`, if rows are counted rays.
+    pub sky: Option<Rows>,
     /// Whether the coupling was computed or reused, and why.
     pub origin: Origin,
     /// Number of form factors computed for it.
@@ -129,7 +132,7 @@ impl Coupler<'_> {
             Request::new(&self.placed.world, Audience::Instance(instance), &others, self.resolution);
         let MadeBlock { rows: coupling, origin, computed, computed_by_row, time, .. } =
             self.block((instance, COUPLING), request, Some(own), None)?;
-        Ok(Coupled { coupling, origin, computed, computed_by_row, corrected, time })
+        Ok(Coupled { coupling, sky: None, origin, computed, computed_by_row, corrected, time })
     }
 
     /// Which blocks of an instance would be computed or reused, and why. Computes no form factors.
@@ -139,12 +142,17 @@ impl Coupler<'_> {
             foreseen::<Rows>(self.store, &self.name(instance, what), &manifest)
         };
         let intruders = self.intruders(instance);
-        let corrected = (!intruders.is_empty()).then(|| origin(CORRECTED));
+        let escapes = &self.placed.part_of(instance).part.escapes;
+        let is_corrected = match &self.placed.scenery {
+            Some(scenery) => may_be_blocked(scenery, instance, escapes),
+            None => !intruders.is_empty(),
+        };
+        let corrected = is_corrected.then(|| origin(CORRECTED));
         ForeseenBlocks { intruders, corrected, coupling: origin(COUPLING) }
     }
 
     /// The instances with geometry inside the hull of this one.
-    fn intruders(&self, instance: usize) -> Vec<usize> {
+    pub fn intruders(&self, instance: usize) -> Vec<usize> {
         intruders(&self.placed.instances, |k| &self.placed.part_of(k).part.geometry, instance)
     }
 
@@ -154,23 +162,27 @@ impl Coupler<'_> {
         let request = Request::of_self(&self.placed.world, &senders, self.resolution);
         self.monitor.expect(self.placed.world.elements_of(instance).len() as f64);
         // The part's own block is that of a scene into which the intruders were added.
-        let part = &self.placed.part_of(instance).part;
         let alone = StaleBlock::alone(self.placed, instance, &intruders);
         let MadeBlock { rows: self_block, origin, computed, computed_by_row, key, time } =
             self.block((instance, CORRECTED), request, None, Some(alone))?;
         if origin.is_reused() {
             self.monitor.spare(self.placed.world.elements_of(instance).len() as f64);
         }
+        let local = self.corrected_light(instance, key, &self_block)?;
+        Ok(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time })
+    }
+
+    /// The local equilibrium of an instance with this self block, which is stored under `key`.
+    pub fn corrected_light(&self, instance: usize, key: Key, self_block: &Rows) -> Result<LocalEquilibrium> {
         // The cached light excludes the emission scale, so changing the scale costs no local solve.
-        let optics = self.placed.paint_of(instance);
+        let (part, optics) = (&self.placed.part_of(instance).part, self.placed.paint_of(instance));
         let manifest = light_manifest(key.into(), &optics, part.local.solver);
         let name = self.name(instance, "corrected light");
         let (light, _) = cached(self.store, &name, &manifest, self.monitor, || {
-            let local = local_equilibrium(&self_block, &part.geometry, &optics, part.local.solver);
+            let local = local_equilibrium(self_block, &part.geometry, &optics, part.local.solver);
             Ok(BakedLight { optics: optics.clone(), local })
         })?;
-        let local = light.local;
-        Ok(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time })
+        Ok(light.local)
     }
 
     /// A block of an instance: read from the cache, or updated from a stale block where the changes cannot matter, or
@@ -252,12 +264,13 @@ impl Coupler<'_> {
         sky_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance)
     }
 
-    fn manifest(&self, instance: usize, what: &str) -> Manifest {
+    /// The inputs of a block of an instance.
+    pub fn manifest(&self, instance: usize, what: &str) -> Manifest {
         placed_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance, what)
     }
 
     fn part_senders(&self) -> Vec<BakedKey> {
-        let known = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.clusters.nodes() };
+        let known = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.unknowns().nodes() };
         self.placed.parts.iter().map(known).collect()
     }
 }

@@ -7,7 +7,6 @@ use crate::gather::Gather;
 use crate::gather::faces::CoplanarFaces;
 use crate::gather::lights::Lights;
 use crate::gather::surface_piece::SurfacePiece;
-use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::apply;
 use equilux_bake::oven::cached::cached;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
@@ -17,8 +16,12 @@ use equilux_formats::{Element, Optics, Result, Rgb, Rows};
 /// The direct irradiance of all elements.
 #[derive(Debug)]
 pub struct Direct {
-    /// D, W/m², one vector for each instance.
+    /// D, W/m², one vector of unknowns for each instance.
     pub irradiance: Vec<Vec<Rgb>>,
+    /// Radiosity that travels by D instead of along the rows, W/m²; likewise.
+    pub apart: Vec<Vec<Rgb>>,
+    /// The part of D that comes from it, W/m²; likewise.
+    pub from_apart: Vec<Vec<Rgb>>,
     /// Form factors computed for the sky.
     pub computed: usize,
     /// The names of the lamps and suns that light no element.
@@ -31,16 +34,8 @@ const UNLIT_SHARE: f64 = 1e-9;
 /// D of all elements. Fails if the monitor was stopped.
 pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
     let placed = coupler.placed;
-    let dark = vec![Rgb::BLACK; placed.world.elements.len()];
-    if lights.is_empty() {
-        return Ok(Direct { irradiance: placed.split(&dark), computed: 0, unlit: vec![] });
-    }
-    let LampLight { irradiance, unlit } = if lights.lamps.is_empty() && lights.suns.is_empty() {
-        LampLight { irradiance: dark, unlit: vec![] }
-    } else {
-        coupler.monitor.begin("light of lamps", 0, 0.0);
-        of_lamps(placed, lights)
-    };
+    let apart = placed.split(&vec![Rgb::BLACK; placed.world.elements.len()]);
+    let LampLight { irradiance, unlit } = of_lamps(coupler, lights);
     let mut irradiance = placed.split(&irradiance);
     let mut computed = 0;
     if let Some((dome, sends)) = &lights.sky {
@@ -56,20 +51,21 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
             own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum += h);
         }
     }
-    Ok(Direct { irradiance, computed, unlit })
+    Ok(Direct { irradiance, from_apart: apart.clone(), apart, computed, unlit })
 }
 
 /// Light that arrives from lamps and suns.
-struct LampLight {
+#[derive(Debug)]
+pub struct LampLight {
     /// W/m², one row for each element of the world.
-    irradiance: Vec<Rgb>,
+    pub irradiance: Vec<Rgb>,
     /// The names of those that light no element.
-    unlit: Vec<String>,
+    pub unlit: Vec<String>,
 }
 
 impl LampLight {
     /// Add the irradiance of these elements, W/m², from a lamp that could send them at most `power`, W.
-    fn add(&mut self, name: &str, power: Rgb, elements: &[Element], irradiance: &[Rgb]) {
+    pub fn add(&mut self, name: &str, power: Rgb, elements: &[Element], irradiance: &[Rgb]) {
         let mut arrived = Rgb::BLACK;
         for ((sum, element), &h) in self.irradiance.iter_mut().zip(elements).zip(irradiance) {
             *sum += h;
@@ -83,9 +79,14 @@ impl LampLight {
 }
 
 /// The light of lamps and suns, averaged over each element.
-fn of_lamps(placed: &PlacedParts, lights: &Lights) -> LampLight {
+fn of_lamps(coupler: &Coupler, lights: &Lights) -> LampLight {
+    let placed = coupler.placed;
     let elements = &placed.world.elements;
     let dark = vec![Rgb::BLACK; elements.len()];
+    if lights.lamps.is_empty() && lights.suns.is_empty() {
+        return LampLight { irradiance: dark, unlit: vec![] };
+    }
+    coupler.monitor.begin("light of lamps", 0, 0.0);
     let mut arriving = LampLight { irradiance: dark.clone(), unlit: vec![] };
     let gather = |lights: &Lights| Gather::new(placed, &dark, &dark, lights, EXACT);
     let none = gather(&Lights::default());
@@ -129,10 +130,10 @@ fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> R
     Ok((found?.0, computed))
 }
 
-/// The optics with emission E + ρD, which drives the exchange.
-pub fn driven(optics: &Optics, direct: &[Rgb]) -> Optics {
-    let rows = optics.emission.iter().zip(&optics.reflectance).zip(direct);
-    let emission = rows.map(|((&e, &rho), &d)| e + rho * d).collect();
+/// The optics with emission E + ρD − A, which drives the exchange; A is the radiosity that does not travel along the rows.
+pub fn driven(optics: &Optics, direct: &[Rgb], apart: &[Rgb]) -> Optics {
+    let rows = optics.emission.iter().zip(&optics.reflectance).zip(direct).zip(apart);
+    let emission = rows.map(|(((&e, &rho), &d), &a)| e - a + rho * d).collect();
     Optics { emission, reflectance: optics.reflectance.clone() }
 }
 

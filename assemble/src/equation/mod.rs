@@ -1,17 +1,23 @@
 //! The radiosity equation of a scene: baked and placed parts, the blocks that couple them, and the light of lamps,
 //! suns and sky. The exchange solves it; `gather` evaluates its light at any point.
 
+mod counted;
 pub mod coupling;
 pub mod direct;
+mod direct_by_rays;
 pub mod environment;
 pub mod interpenetration;
 pub mod intruders;
 pub mod observer;
 pub mod optics;
+pub mod reflected;
+mod sources;
 mod stale_block;
 
+use crate::equation::counted::RayTracer;
 use crate::equation::coupling::{Coupled, Coupler};
 use crate::equation::direct::{Direct, direct, driven};
+use crate::equation::direct_by_rays::DirectByRays;
 use crate::equation::environment::Environment;
 use crate::equation::observer::Observer;
 use crate::equation::optics::{joined, whole_optics};
@@ -60,14 +66,33 @@ impl Equation {
         oven.monitor.expect(expected_rows(&prepared, environment));
         let mut placed = bake_parts(oven, prepared, observer)?;
         observer.placed(&placed, &scene.cameras);
-        let coupled = couple(&coupler(oven, &placed), observer)?;
-        placed.relight(oven, |k| coupled[k].corrected.is_none())?;
+        let coupler = coupler(oven, &placed);
         let lights = lights(&scene.lights, environment.light_units, environment.sky.as_ref(), &placed.world);
-        let direct = direct(&coupler(oven, &placed), &lights)?;
-        let driven = |k: usize| driven(&placed.optics_of(k), &direct.irradiance[k]);
+        let optics = whole_optics(&placed);
+        let (coupled, direct) = match (&placed.scenery, oven.resolution.rays) {
+            (None, _) | (_, None) => {
+                (couple(&coupler, observer, |k| coupler.couple(k))?, direct(&coupler, &lights)?)
+            }
+            (Some(scenery), Some(rays)) => {
+                let tracer = RayTracer::new(&placed, scenery, rays);
+                let coupled = couple(&coupler, observer, |k| coupler.couple_by_rays(k, &tracer))?;
+                let by_rays = DirectByRays { coupler: &coupler, scenery, coupled: &coupled, optics: &optics };
+                let direct = by_rays.irradiance(&lights)?;
+                (coupled, direct)
+            }
+        };
+        placed.relight(oven, |k| coupled[k].corrected.is_none())?;
+        let driven = |k: usize| {
+            let own = placed.part_of(k).part.geometry.optics_of_unknowns(&placed.optics_of(k));
+            driven(&own, &direct.irradiance[k], &direct.apart[k])
+        };
         let driven = (0..placed.instances.len()).map(driven).collect();
-        let (optics, resolution) = (whole_optics(&placed), oven.resolution);
-        Ok(Self { optics, placed, coupled, lights, direct, driven, resolution })
+        Ok(Self { optics, placed, coupled, lights, direct, driven, resolution: oven.resolution })
+    }
+
+    /// Rays a row, if rows are counted rays.
+    pub fn rays(&self) -> Option<u32> {
+        self.resolution.rays
     }
 
     /// The block row of each instance.
@@ -99,20 +124,28 @@ pub fn systems<'a>(
             let local_equilibrium = coupled[k].local(placed.local_of(k));
             let local = LocalSystem::new(
                 self_block,
-                &part.geometry.clusters,
+                part.geometry.unknowns(),
                 &optics[k].reflectance,
                 part.local.solver,
                 local_equilibrium.factors.as_ref(),
             );
+            let (unknowns, scale) = (part.geometry.unknowns(), placed.instances[k].scale().powi(2));
             let elements = &placed.world.elements[placed.world.elements_of(k)];
+            let areas = match &part.geometry.patches {
+                None => elements.iter().map(|element| element.area).collect(),
+                Some(patches) => {
+                    let open = |i: usize| self_block.share_of_rays(i, patches.rays);
+                    (0..unknowns.elements()).map(|i| unknowns.area_of(i) * scale * open(i)).collect()
+                }
+            };
             InstanceSystem {
                 optics: optics[k].clone(),
                 self_block,
-                clusters: &part.geometry.clusters,
+                clusters: unknowns,
                 coupling: &coupled[k].coupling,
                 local,
                 answers: &local_equilibrium.answers,
-                areas: elements.iter().map(|element| element.area).collect(),
+                areas,
             }
         })
         .collect()
@@ -120,9 +153,10 @@ pub fn systems<'a>(
 
 /// The expected work for blocks and exchange, in rows of form factors.
 fn expected_rows(prepared: &Prepared, environment: &Environment) -> f64 {
-    let parts: usize = prepared.parts.iter().map(|part| part.geometry.elements.len()).sum();
-    let elements = prepared.elements();
-    let sky = if environment.sky.is_some() { elements } else { 0 };
+    let parts: usize = prepared.parts.iter().map(|part| part.geometry.unknowns().elements()).sum();
+    let elements = prepared.unknowns();
+    let by_rays = prepared.resolution.rays.is_some();
+    let sky = if environment.sky.is_some() && !by_rays { elements } else { 0 };
     (parts + elements + sky) as f64 + ROWS_PER_ELEMENT * elements as f64
 }
 
@@ -142,13 +176,17 @@ fn coupler<'a>(oven: &'a Oven, placed: &'a PlacedParts) -> Coupler<'a> {
     Coupler { placed, store, file, resolution, monitor }
 }
 
-fn couple(coupler: &Coupler, observer: &dyn Observer) -> Result<Vec<Coupled>> {
+fn couple(
+    coupler: &Coupler,
+    observer: &dyn Observer,
+    couple: impl Fn(usize) -> Result<Coupled>,
+) -> Result<Vec<Coupled>> {
     coupler.read_ahead();
     let couple = |k: usize| {
-        let coupled = coupler.couple(k)?;
+        let coupled = couple(k)?;
         observer.coupled(k, &coupled);
         if coupled.origin.is_reused() {
-            coupler.monitor.spare(coupler.placed.world.elements_of(k).len() as f64);
+            coupler.monitor.spare(coupler.placed.unknowns_of(k) as f64);
         }
         Ok(coupled)
     };

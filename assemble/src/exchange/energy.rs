@@ -76,11 +76,13 @@ fn shares(group: &Group, member: usize, arriving: &[f64]) -> Vec<f64> {
     let elements = system.areas.len();
     // A part's tree measures areas in the part's units.
     let scale = if elements == 0 { 1.0 } else { system.areas[0] / system.clusters.area_of(0) };
-    let mut shares: Vec<f64> = arriving
-        .iter()
-        .enumerate()
-        .map(|(sender, power)| power / (system.clusters.area_of(sender) * scale))
-        .collect();
+    let area = |sender: usize| match system.areas.get(sender) {
+        Some(&area) => area,
+        None => system.clusters.area_of(sender) * scale,
+    };
+    // Nothing is sent from where everything is covered.
+    let share = |(sender, power): (usize, &f64)| if area(sender) > 0.0 { power / area(sender) } else { 0.0 };
+    let mut shares: Vec<f64> = arriving.iter().enumerate().map(share).collect();
     // Each element of a cluster has the cluster's share; outer clusters come first.
     for (cluster, pair) in system.clusters.children().iter().enumerate() {
         pair.iter().for_each(|&child| shares[child as usize] += shares[elements + cluster]);

@@ -19,7 +19,7 @@ pub struct InstanceSystem<'a> {
     pub local: LocalSystem<'a>,
     /// Boundary responses: radiosities caused by light from outside.
     pub answers: &'a BoundaryResponses,
-    /// Area of its elements in the scene, m².
+    /// Area of its unknowns in the scene that is not covered, m².
     pub areas: Vec<f64>,
 }
 

@@ -6,6 +6,7 @@ use equilux_bake::elements::clusters::hierarchy;
 use equilux_formats::{ClusterTree, Corners, Element, Rgb};
 
 /// Emitting polygons, their hierarchy and their emission.
+#[derive(Debug)]
 pub struct EmittingSurfaces {
     /// Polygons in faces of the world.
     pub elements: Vec<Element>,
@@ -13,11 +14,14 @@ pub struct EmittingSurfaces {
     pub clusters: ClusterTree,
     /// W/m², one row an element.
     pub emission: Vec<Rgb>,
+    /// For each element of the scene the polygon that covers it; u32::MAX if it does not emit.
+    pub of_element: Vec<u32>,
 }
 
 /// All emitting surfaces. `emission`: W/m², one row an element.
 pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> EmittingSurfaces {
     let mut found: Vec<(Element, Rgb)> = Vec::new();
+    let mut of_element = vec![u32::MAX; placed.world.elements.len()];
     for k in 0..placed.instances.len() {
         let clusters = &placed.part_of(k).part.geometry.clusters;
         let own = &emission[placed.world.elements_of(k)];
@@ -25,7 +29,11 @@ pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> EmittingSurfaces {
         while let Some(node) = open.pop() {
             match uniform(clusters, own, node) {
                 Some(Rgb::BLACK) => {}
-                Some(sends) if let Some(polygon) = polygon(placed, k, node) => found.push((polygon, sends)),
+                Some(sends) if let Some(polygon) = polygon(placed, k, node) => {
+                    let first = placed.world.elements_of(k).start;
+                    clusters.spread(node, &mut |element, _| of_element[first + element] = found.len() as u32);
+                    found.push((polygon, sends));
+                }
                 _ => {
                     let children =
                         clusters.children_of(node).expect("an element is a polygon of one emission");
@@ -37,11 +45,15 @@ pub fn surfaces(placed: &PlacedParts, emission: &[Rgb]) -> EmittingSurfaces {
     let elements: Vec<Element> = found.iter().map(|(element, _)| *element).collect();
     if elements.is_empty() {
         let clusters = ClusterTree::new(&[], vec![]).expect("nothing is a tree");
-        return EmittingSurfaces { elements, clusters, emission: vec![] };
+        return EmittingSurfaces { elements, clusters, emission: vec![], of_element };
     }
     let (order, clusters) = hierarchy(&elements);
+    let mut place = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(k, &i)| place[i] = k as u32);
+    let emitting = of_element.iter_mut().filter(|number| **number != u32::MAX);
+    emitting.for_each(|number| *number = place[*number as usize]);
     let (elements, emission) = order.into_iter().map(|i| found[i]).unzip();
-    EmittingSurfaces { elements, clusters, emission }
+    EmittingSurfaces { elements, clusters, emission, of_element }
 }
 
 /// The emission of all elements of a node, if it is uniform.

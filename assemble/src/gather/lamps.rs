@@ -62,19 +62,28 @@ impl Lamp {
 
     /// The irradiance at a point, W/m².
     pub fn at(&self, world: &World, point: &Element) -> Rgb {
-        let to = point.centroid - self.position;
-        let cosine = -point.normal.dot(to) / to.length();
-        if cosine.is_nan() || cosine <= 0.0 {
-            return Rgb::BLACK;
+        let arriving = self.unoccluded(point.centroid, point.normal);
+        if arriving == Rgb::BLACK {
+            return arriving;
         }
+        let to = point.centroid - self.position;
         let plane = Plane { normal: point.normal, point: point.centroid };
         let mut hidden = false;
         self.pyramids(world, &[point.centroid], plane, point.face, |pyramid| {
             hidden |= pyramid.corners_inside(&[to]) == 1;
         });
+        if hidden { Rgb::BLACK } else { arriving }
+    }
+
+    /// The irradiance at a place with this normal, W/m², nothing being in the way.
+    pub fn unoccluded(&self, place: DVec3, normal: DVec3) -> Rgb {
+        let to = place - self.position;
+        let cosine = -normal.dot(to) / to.length();
+        if cosine.is_nan() || cosine <= 0.0 {
+            return Rgb::BLACK;
+        }
         let sent = self.cone.as_ref().map_or(1.0, |cone| cone.falloff(to));
-        let share = if hidden { 0.0 } else { sent * cosine / to.length_squared() };
-        self.intensity * share
+        self.intensity * (sent * cosine / to.length_squared())
     }
 
     fn over(&self, world: &World, piece: &SurfacePiece) -> Rgb {

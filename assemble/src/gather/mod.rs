@@ -13,7 +13,8 @@ pub mod average;
 mod cone;
 mod directions;
 pub mod faces;
-mod glowing;
+pub mod glowing;
+mod hemisphere;
 pub mod lamps;
 pub mod lights;
 pub mod outside;
@@ -27,6 +28,7 @@ use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::apply;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
+use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::{Element, Rgb, Rows};
@@ -34,6 +36,8 @@ use faces::Faces;
 use glam::DVec3;
 use lamps::Lamp;
 use lights::Lights;
+use outside::frame;
+use std::sync::Arc;
 
 /// Points closer to a plane than this share of the examined region lie in it, since corners are stored as f32.
 const COPLANAR_TOLERANCE: f64 = 1e-6;
@@ -55,6 +59,10 @@ pub struct Gather {
     shining: Vec<Rgb>,
     lamps: Vec<Lamp>,
     resolution: Resolution,
+    /// The scene for rays, if its rows are counted rays.
+    scenery: Option<Arc<Scenery>>,
+    /// The centre of the scene, around which the sky lies.
+    centre: DVec3,
 }
 
 impl Gather {
@@ -69,7 +77,7 @@ impl Gather {
     ) -> Self {
         let mut world = placed.stage();
         let scene: Vec<usize> = (0..world.instances()).collect();
-        let faces = Faces::of(&world);
+        let (faces, centre) = (Faces::of(&world), frame(&world).0);
         let reflected: Vec<Rgb> = radiosity.iter().zip(emission).map(|(&b, &e)| b - e).collect();
         let mut reflected: Vec<Rgb> = placed
             .split(&reflected)
@@ -94,7 +102,8 @@ impl Gather {
         });
         reflected.resize(world.nodes.len(), Rgb::BLACK);
         let lamps = lights.lamps.clone();
-        Self { world, faces, scene, reflected, glowing, sky, shining, lamps, resolution }
+        let scenery = placed.scenery.clone();
+        Self { world, faces, scene, reflected, glowing, sky, shining, lamps, resolution, scenery, centre }
     }
 
     /// The faces of the scene, for finding the face of a point.
@@ -127,7 +136,11 @@ impl Gather {
     /// Irradiance at points from all light, W/m².
     pub fn irradiance(&self, points: &[Element]) -> Vec<Rgb> {
         let mut found = self.glow(points);
-        found.iter_mut().zip(self.reflected(points)).for_each(|(sum, h)| *sum += h);
+        let reflected = match &self.scenery {
+            Some(scenery) => self.reflected_by_rays(scenery, points),
+            None => self.reflected(points),
+        };
+        found.iter_mut().zip(reflected).for_each(|(sum, h)| *sum += h);
         for lamp in &self.lamps {
             let arriving = points.iter().map(|point| lamp.at(&self.world, point));
             found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum += h);

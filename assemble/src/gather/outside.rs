@@ -103,7 +103,7 @@ fn sun(light: &PunctualLight, centre: DVec3, size: f64) -> Sun {
     let elements = order.into_iter().map(|i| elements[i]).collect();
     Sun {
         name: light.name.clone(),
-        polygons: Geometry { elements, faces: vec![Face::new(outline)], clusters },
+        polygons: Geometry { elements, faces: vec![Face::new(outline)], clusters, patches: None },
         radiosity: light.intensity.map(|e| e / seen),
         power: light.intensity.map(|e| e * PI * size * size),
     }

@@ -49,7 +49,40 @@ pub fn dome(centre: DVec3, size: f64) -> Geometry {
         }
     }
     let (order, clusters) = hierarchy(&elements);
-    Geometry { elements: order.into_iter().map(|i| elements[i]).collect(), faces, clusters }
+    Geometry { elements: order.into_iter().map(|i| elements[i]).collect(), faces, clusters, patches: None }
+}
+
+/// The cells of the sky by number: the six sides of the cube, each row by row, in the order in which [`dome`] makes them.
+#[derive(Debug)]
+pub struct SkyCells;
+
+impl SkyCells {
+    /// Number of cells.
+    pub const COUNT: usize = 6 * SKY_CELLS * SKY_CELLS;
+
+    /// The cell in this direction.
+    pub fn towards(direction: DVec3) -> usize {
+        let axis = direction.abs().max_position();
+        let sign = direction[axis].signum();
+        let (n, u) = (DVec3::AXES[axis] * sign, DVec3::AXES[(axis + 1) % 3]);
+        let v = u.cross(n);
+        let cell = |along: DVec3| {
+            let angle = (direction.dot(along) / direction.dot(n)).atan();
+            let place = (angle / FRAC_PI_4 + 1.0) / 2.0 * SKY_CELLS as f64;
+            (place.max(0.0) as usize).min(SKY_CELLS - 1)
+        };
+        let side = 2 * axis + usize::from(sign < 0.0);
+        (side * SKY_CELLS + cell(v)) * SKY_CELLS + cell(u)
+    }
+
+    /// What a sky sends from each cell, W/m², from what it sends from the elements of its dome around `centre`.
+    pub fn radiosity(dome: &Geometry, sends: &[Rgb], centre: DVec3) -> Vec<Rgb> {
+        let mut cells = vec![Rgb::BLACK; Self::COUNT];
+        for (cell, &radiosity) in dome.elements.iter().zip(sends) {
+            cells[Self::towards(cell.centroid - centre)] = radiosity;
+        }
+        cells
+    }
 }
 
 /// The loaded radiances of a sky, W/(m² sr).

@@ -23,7 +23,7 @@ pub fn refuse_endless_light(
     let lack = is_compressed(systems).then_some(MAX_ROW_ERROR);
     let rows = |element: usize| {
         let (k, i) = place[element];
-        let first = placed.world.nodes_of(k).start;
+        let first = placed.columns_of(k).start;
         let own = systems[k].self_block.row(i).map(|(j, f)| (j + first, f));
         let mut row: Vec<(usize, f64)> = lack.map(|lack| (element, lack)).into_iter().collect();
         for (node, value) in own.chain(systems[k].coupling.row(i)) {
@@ -44,10 +44,11 @@ pub fn refuse_endless_light(
     ))
 }
 
-/// Call `visit` with every element of a node of the scene and its share of the node's area.
-fn spread(placed: &PlacedParts, node: usize, visit: &mut impl FnMut(usize, f64)) {
-    let instance = placed.world.instance_of_node(node);
-    let (nodes, elements) = (placed.world.nodes_of(instance), placed.world.elements_of(instance));
-    let clusters = &placed.part_of(instance).part.geometry.clusters;
-    clusters.spread(node - nodes.start, &mut |element, share| visit(elements.start + element, share));
+/// Call `visit` with every unknown that a column stands for and its share of the column's area.
+fn spread(placed: &PlacedParts, column: usize, visit: &mut impl FnMut(usize, f64)) {
+    let instance = placed.instance_of_column(column);
+    let first: usize = (0..instance).map(|k| placed.unknowns_of(k)).sum();
+    let unknowns = placed.part_of(instance).part.geometry.unknowns();
+    let node = column - placed.columns_of(instance).start;
+    unknowns.spread(node, &mut |unknown, share| visit(first + unknown, share));
 }

@@ -5,6 +5,7 @@
 pub mod enclosure;
 pub mod endless;
 pub mod exact_rows;
+pub mod noise;
 pub mod sample;
 
 use crate::exchange::outcome::Outcome;

@@ -151,6 +151,19 @@ pub struct ErrorReport {
     pub spread: Option<f64>,
     /// Residuals in exact rows, if there are any.
     pub exact_rows: Option<ExactRowsReport>,
+    /// The noise of rows by rays, if there are any.
+    pub noise: Option<NoiseReport>,
+}
+
+/// The noise of rows by rays, measured and not proved.
+#[derive(Debug, Clone, Serialize)]
+pub struct NoiseReport {
+    /// Rays a row.
+    pub rays: u32,
+    /// Number of rows in which it was measured.
+    pub rows: usize,
+    /// Root mean square of the standard errors of their irradiance over the mean irradiance; the worst channel.
+    pub rms_rel: f64,
 }
 
 /// Residuals r = E + ρFB − B in exact rows of F. Unless all rows are exact, they prove nothing about other elements.

@@ -21,6 +21,7 @@ pub fn remarks(placed: &PlacedParts, coupled: &[Coupled]) -> Vec<String> {
     let name = |k: usize| format!("`{}`", placed.instances[k].name);
     let corrected = coupled.iter().enumerate().filter_map(|(k, own)| Some((k, own.corrected.as_ref()?)));
     let inside: Vec<(String, bool)> = corrected
+        .filter(|(_, own)| !own.intruders.is_empty())
         .map(|(k, own)| {
             let inside: Vec<String> = own.intruders.iter().map(|&i| name(i)).collect();
             (format!("inside {} is {}", name(k), inside.join(", ")), own.origin.is_reused())

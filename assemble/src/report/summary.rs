@@ -1,11 +1,14 @@
 //! Creates the report from the results of a run.
 
-use super::{Blocks, Bytes, ErrorReport, ExactRowsReport, PartReport, Report, RoundReport, Verify};
+use super::{
+    Blocks, Bytes, ErrorReport, ExactRowsReport, NoiseReport, PartReport, Report, RoundReport, Verify,
+};
 use crate::equation::Equation;
 use crate::equation::coupling::Coupled;
 use crate::exchange::outcome::{Outcome, Round};
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
+use crate::proof::noise::Noise;
 use crate::proof::{Proof, ResidualStatistics};
 use crate::report::fates::seen_instances;
 use crate::report::notes::{notes, remarks};
@@ -42,6 +45,8 @@ pub struct ReportSources<'a> {
     pub outcome: &'a Outcome,
     /// The error of clusters, if there are clusters.
     pub proof: Option<&'a Proof>,
+    /// The noise of rows by rays, if it was measured.
+    pub noise: Option<Noise>,
     /// The classic solution, if requested.
     pub classic: Option<&'a Classic>,
 }
@@ -115,7 +120,17 @@ fn error(sources: &ReportSources) -> ErrorReport {
         let proved = sources.outcome.convergence.error_bound;
         let everywhere = vec![Rgb::splat(proved); radiosity.len()];
         let proved_rms = rms_over_mean(&placed.world.elements, &everywhere, radiosity);
-        return ErrorReport { proved, proved_rms, proved_from: "rounds", spread: None, exact_rows: None };
+        let noise = sources.noise.zip(sources.equation.rays());
+        let noise =
+            noise.map(|(noise, rays)| NoiseReport { rays, rows: noise.rows, rms_rel: noise.over_mean });
+        return ErrorReport {
+            proved,
+            proved_rms,
+            proved_from: "rounds",
+            spread: None,
+            exact_rows: None,
+            noise,
+        };
     };
     let measured = proof.measured.as_ref();
     let all = measured.is_some_and(|measured| measured.rows == radiosity.len());
@@ -125,6 +140,7 @@ fn error(sources: &ReportSources) -> ErrorReport {
         proved_from: if all { "exact rows" } else { "spread" },
         spread: Some(most(&proof.spread)),
         exact_rows: measured.map(exact_rows),
+        noise: None,
     }
 }
 

@@ -1,6 +1,6 @@
 //! The short report as text: the scene, its time, its error, notes, and the written files.
 
-use super::{ErrorReport, Report, Verify};
+use super::{ErrorReport, NoiseReport, Report, Verify};
 use crate::report::advice::Advice;
 use equilux_formats::Rgb;
 use std::collections::BTreeMap;
@@ -90,8 +90,9 @@ impl Report {
 impl ErrorReport {
     /// The measured error and the proved bound, in a clause each.
     fn text(&self) -> String {
+        let what = if self.noise.is_some() { "the exchange " } else { "" };
         let proved = if self.proved.is_finite() {
-            format!("proved below {} W/m² everywhere", rounded(self.proved))
+            format!("{what}proved below {} W/m² everywhere", rounded(self.proved))
         } else {
             "without a proof, because some surfaces reflect all light".into()
         };
@@ -101,7 +102,13 @@ impl ErrorReport {
                 percent(rows.estimated_rms_rel),
                 rows.rows
             ),
-            None => proved,
+            None => match &self.noise {
+                Some(NoiseReport { rays, rows, rms_rel }) => format!(
+                    "noise about {} of the mean (measured in {rows} rows of {rays} rays), {proved}",
+                    percent(*rms_rel)
+                ),
+                None => proved,
+            },
         }
     }
 }

@@ -29,19 +29,19 @@ pub fn unlit_notes(
 
 /// The names of emitting instances that no element sees.
 fn unseen(placed: &PlacedParts, systems: &[InstanceSystem]) -> Vec<String> {
-    let world = &placed.world;
-    let mut emits: Vec<bool> = Vec::with_capacity(world.nodes.len());
+    let mut emits: Vec<bool> = Vec::with_capacity(placed.columns());
     for (instance, system) in systems.iter().enumerate() {
-        let means = system.clusters.means(&placed.optics_of(instance).emission);
+        let optics = placed.part_of(instance).part.geometry.optics_of_unknowns(&placed.optics_of(instance));
+        let means = system.clusters.means(&optics.emission);
         emits.extend(means.iter().map(|emission| *emission != [0.0; 3]));
     }
     let mut unseen: Vec<bool> =
-        (0..systems.len()).map(|instance| world.nodes_of(instance).any(|node| emits[node])).collect();
+        (0..systems.len()).map(|instance| placed.columns_of(instance).any(|column| emits[column])).collect();
     for (instance, system) in systems.iter().enumerate() {
-        let first = world.nodes_of(instance).start;
+        let first = placed.columns_of(instance).start;
         let own = system.self_block.senders_seen().map(|sender| first + sender);
         for sender in own.chain(system.coupling.senders_seen()).filter(|&sender| emits[sender]) {
-            unseen[world.instance_of_node(sender)] = false;
+            unseen[placed.instance_of_column(sender)] = false;
         }
     }
     let instances = placed.instances.iter().zip(unseen);

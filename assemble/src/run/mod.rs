@@ -13,7 +13,9 @@ use crate::exchange::listener::Unobserved;
 use crate::exchange::system::InstanceSystem;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{OutputRecord, RESULT, RunResults, write_all};
+use crate::proof::noise::noise;
 use crate::proof::prove;
+use crate::proof::sample::ExactRows;
 use crate::report::Report;
 use crate::report::fates::explained;
 use crate::report::light_notes::light_notes;
@@ -60,6 +62,11 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let (equation, outcome) = (&solved.equation, &solved.outcome);
     let (placed, systems) = (&equation.placed, equation.systems());
     let proof = prove(placed, &systems, outcome, requests.exact_rows, monitor);
+    let noise = match requests.exact_rows {
+        ExactRows::About(0) => None,
+        ExactRows::About(rows) => noise(equation, &outcome.radiosity, &solved.irradiance, rows),
+        ExactRows::All => noise(equation, &outcome.radiosity, &solved.irradiance, elements),
+    };
     let peak = peak_rss();
     let compare = || unless_stopped(classic(placed, &equation.driven_optics(), monitor));
     let classic = if requests.verify { compare()? } else { None };
@@ -83,6 +90,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         systems: &systems,
         outcome,
         proof: proof.as_ref(),
+        noise,
         classic: classic.as_ref(),
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&sources) };

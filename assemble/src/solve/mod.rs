@@ -3,9 +3,10 @@
 mod last_light;
 pub mod settings;
 
+use crate::equation::Equation;
 use crate::equation::environment::Environment;
 use crate::equation::observer::Observer;
-use crate::equation::{Equation, direct::with_direct};
+use crate::equation::reflected::ElementListener;
 use crate::exchange::exchange;
 use crate::exchange::listener::Unobserved;
 use crate::exchange::outcome::Outcome;
@@ -84,20 +85,22 @@ pub fn solve_prepared(
     monitor: &Monitor,
     observer: &dyn Observer,
 ) -> Result<Solved> {
-    let (file, resolution) = (&scene.file, settings.preparation.resolution);
+    let (file, resolution) = (&scene.file, prepared.resolution);
     let oven = Oven { store, file, resolution, monitor };
     let equation = Equation::new(&oven, scene, prepared, environment, observer)?;
-    let Equation { placed, coupled, optics, direct, .. } = &equation;
+    let Equation { placed, coupled, optics, .. } = &equation;
     let systems = equation.systems();
     refuse_endless_light(placed, &systems, &equation.driven_optics(), file)?;
     observer.coupled_all(placed, coupled, optics);
     let start = if settings.warm { last_light(placed, store, file) } else { None };
-    let outcome = exchange(&systems, settings.method, settings.goal, start.as_deref(), monitor, observer);
+    let start = start.map(|start| equation.start_from(&start));
+    let listener = ElementListener { equation: &equation, listener: observer };
+    let outcome = exchange(&systems, settings.method, settings.goal, start.as_deref(), monitor, &listener);
     drop(systems);
+    let irradiance = equation.irradiance_of_elements(&outcome.irradiance);
+    let outcome = equation.of_elements(outcome);
     if settings.warm {
         keep(placed, store, file, &outcome.radiosity)?;
     }
-    let mut irradiance = outcome.irradiance.clone();
-    with_direct(&mut irradiance, &direct.irradiance);
     Ok(Solved { equation, outcome, irradiance })
 }

@@ -9,7 +9,7 @@ use super::row::Compared;
 use super::run::Run;
 use super::setting::{Kind, Setting, Skipped};
 use equilux_bake::elements::ElementSize;
-use equilux_bake::oven::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Error, Result, Scene};
 use std::time::{Duration, Instant};
@@ -161,7 +161,14 @@ impl<'a> Trials<'a> {
 }
 
 fn preparation(element_size: Option<ElementSize>) -> Preparation {
-    Preparation { element_size, division: Division::Authored, resolution: EXACT, local_solver: None }
+    Preparation {
+        element_size,
+        division: Division::Authored,
+        resolution: EXACT,
+        rows: RowMethod::Exact,
+        rays: 256,
+        local_solver: None,
+    }
 }
 
 /// The element size that the scene gets by default, metres.

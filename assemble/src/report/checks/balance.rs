@@ -60,12 +60,12 @@ fn culprits(
     // Power that each instance receives from each other, and power that each sends.
     let mut arriving: BTreeMap<(usize, usize), f64> = BTreeMap::new();
     for (k, system) in systems.iter().enumerate() {
-        for (block, first) in [(system.self_block, placed.world.nodes_of(k).start), (system.coupling, 0)] {
+        for (block, first) in [(system.self_block, placed.columns_of(k).start), (system.coupling, 0)] {
             for group in 0..block.groups() {
                 let areas: Vec<[f64; 1]> = block.receivers_of(group).map(|i| [system.areas[i]]).collect();
                 for (column, [area]) in block.scatter_group(group, &areas) {
-                    let sender = placed.world.instance_of_node(first + column);
-                    let place = first + column - placed.world.nodes_of(sender).start;
+                    let sender = placed.instance_of_column(first + column);
+                    let place = first + column - placed.columns_of(sender).start;
                     *arriving.entry((sender, k)).or_default() += area * means[sender][place];
                 }
             }

@@ -63,7 +63,7 @@ pub fn plan(job: &Job) -> Result<Plan> {
     let lights = light_notes(&scene, job.settings.light_units, job.settings.sky.as_ref());
     let stopped = Monitor::default();
     stopped.stop();
-    let resolution = job.settings.preparation.resolution;
+    let resolution = prepared.resolution;
     let oven = Oven { store: &store, file: &job.scene, resolution, monitor: &stopped };
     let baked =
         prepared.parts.iter().map(|part| unless_stopped(oven.bake(part))).collect::<Result<Vec<_>>>()?;

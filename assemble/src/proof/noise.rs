@@ -1,0 +1,79 @@
+//! The noise of rows by rays, measured: what independent sets of rays find differs as much as a row is uncertain (Owen 1995). No
+//! proof: the bound of the exchange holds for the rows as they were counted.
+
+use crate::equation::Equation;
+use crate::gather::outside::frame;
+use crate::gather::sky::SkyCells;
+use equilux_bake::rays::counts::replicas;
+use equilux_bake::rays::samples::Samples;
+use equilux_bake::rays::scenery::Landing;
+use equilux_bake::rays::surfaces::End;
+use equilux_formats::Rgb;
+use rayon::prelude::*;
+
+/// Independent sets of rays of a row.
+const REPLICAS: usize = 4;
+
+/// The noise of the irradiance of rows, in some of them.
+#[derive(Debug, Clone, Copy)]
+pub struct Noise {
+    /// Number of rows.
+    pub rows: usize,
+    /// Root mean square of their standard errors over the mean irradiance of all unknowns; the worst channel.
+    pub over_mean: f64,
+}
+
+/// Measures the noise of about so many rows, evenly over the area, with this radiosity of all elements, W/m²; none if rows
+/// are not counted rays, or no light arrives.
+pub fn noise(equation: &Equation, radiosity: &[Rgb], irradiance: &[Rgb], rows: usize) -> Option<Noise> {
+    let placed = &equation.placed;
+    let (scenery, rays) = (placed.scenery.as_ref()?, equation.rays()?);
+    let along = equation.start_from(&placed.split(radiosity));
+    let sky = equation.lights.sky.as_ref();
+    let cells = sky.map(|(dome, sends)| SkyCells::radiosity(dome, sends, frame(&placed.world).0));
+    let light = |landing: Option<Landing>, direction| match landing {
+        None => cells.as_ref().map_or(Rgb::BLACK, |cells| cells[SkyCells::towards(direction)]),
+        Some(Landing { instance, end: End::Element(element), .. }) => {
+            along[instance][placed.unknown_of(instance, element as usize)]
+        }
+        Some(_) => Rgb::BLACK,
+    };
+    let samples = Samples::new(rays);
+    let chosen = evenly(equation, rows);
+    let squares: Vec<Rgb> =
+        chosen.par_iter().map(|&row| variance(replicas(scenery, &samples, row, light))).collect();
+    let elements = &placed.world.elements;
+    let area: f64 = elements.iter().map(|element| element.area).sum();
+    let mean = elements.iter().zip(irradiance).fold(Rgb::BLACK, |sum, (e, &h)| sum + h * (e.area / area));
+    let sum = squares.iter().fold(Rgb::BLACK, |sum, &square| sum + square);
+    let share = |c: usize| (sum[c] / squares.len() as f64).sqrt() / mean[c];
+    let worst = (0..3).filter(|&c| mean[c] > 0.0).map(share).reduce(f64::max)?;
+    Some(Noise { rows: chosen.len(), over_mean: worst })
+}
+
+/// The variance of independent values.
+fn variance(values: [Rgb; REPLICAS]) -> Rgb {
+    let mean = values.iter().fold(Rgb::BLACK, |sum, &value| sum + value) / REPLICAS as f64;
+    let squares = values.iter().fold(Rgb::BLACK, |sum, &value| sum + (value - mean) * (value - mean));
+    squares / (REPLICAS - 1) as f64
+}
+
+/// About so many unknowns, at even steps of area.
+fn evenly(equation: &Equation, rows: usize) -> Vec<(usize, usize)> {
+    let systems = equation.systems();
+    let areas = || {
+        systems
+            .iter()
+            .enumerate()
+            .flat_map(|(k, system)| system.areas.iter().enumerate().map(move |(i, &area)| ((k, i), area)))
+    };
+    let step = areas().map(|(_, area)| area).sum::<f64>() / rows.max(1) as f64;
+    let mut passed = step / 2.0;
+    let steps = areas().filter(|(_, area)| {
+        passed += area;
+        let is_chosen = passed >= step;
+        passed %= step;
+        is_chosen
+    });
+    steps.map(|(place, _)| place).collect()
+}
