@@ -10,6 +10,7 @@ mod lights;
 mod live;
 mod parts;
 mod physics;
+mod rays;
 mod stiff;
 mod sweep;
 mod textures;

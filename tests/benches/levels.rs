@@ -41,7 +41,7 @@ struct Reference {
 
 fn measure(level: &Level, opening: f64, reference: &mut Option<Reference>) {
     let resolution =
-        if opening == 0.0 { EXACT } else { Resolution { opening, precision: Precision::Single } };
+        if opening == 0.0 { EXACT } else { Resolution { opening, precision: Precision::Single, rays: None } };
     let start = Instant::now();
     let rows = level.rows(resolution);
     let wall = start.elapsed().as_secs_f64();

@@ -4,7 +4,7 @@ use super::{assert_same, contents, start};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::oven::keys::keys_of;
-use equilux_bake::oven::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_formats::Store;
 use equilux_formats::store::Turn;
@@ -54,13 +54,15 @@ fn turns(workshop: &Workshop) -> Vec<Turn> {
         element_size: Some(ElementSize::Metres(1.0)),
         division: Division::Authored,
         resolution: Resolution::for_tolerance(0.01),
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     let scene = import_scene(&workshop.path("scene.glb")).expect("a scene");
     let prepared = prepare(&scene, &wanted).expect("parts");
     let store = Store::open(workshop.path("cache")).expect("a cache");
     // Keys may share a turn.
-    keys_of(&prepared, wanted.resolution, &store).iter().filter_map(|key| store.try_turn(key)).collect()
+    keys_of(&prepared, &store).iter().filter_map(|key| store.try_turn(key)).collect()
 }
 
 /// Long enough for all four parts several times over.

@@ -4,7 +4,7 @@ use super::scene;
 use equilux_assemble::lightmap::atlas::Atlas;
 use equilux_assemble::lightmap::texels::Texels;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::texture::{Texture, TexturedTriangle, Textures, Wrap};
 use equilux_formats::{Instance, Material, Part, PartId, Rgb, Scene};
@@ -65,7 +65,7 @@ proptest! {
         let scene = crate_on_floor(step, floor, crate_, at);
         let atlas = Atlas::new(&scene, Some(step * texel)).expect("an atlas");
         let wanted = Preparation {
-            element_size: Some(ElementSize::Mesh), division: Division::Authored, resolution: EXACT, local_solver: None,
+            element_size: Some(ElementSize::Mesh), division: Division::Authored, resolution: EXACT, rows: RowMethod::Exact, rays: 256, local_solver: None,
         };
         let lit = lit_scene(&scene, &wanted);
         let map = lightmap(&scene, &atlas, &lit, 1.0);

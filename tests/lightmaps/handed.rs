@@ -5,7 +5,7 @@ use equilux_assemble::lightmap::atlas::{Atlas, Tile};
 use equilux_assemble::lightmap::{LightmapOptions, Units};
 use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Material, Part, Rgb};
 use equilux_tests::lit::{lightmap, lit_scene};
@@ -52,6 +52,8 @@ fn mesh() -> Preparation {
         element_size: Some(ElementSize::Mesh),
         division: Division::Authored,
         resolution: EXACT,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     }
 }

@@ -13,7 +13,7 @@ use equilux_assemble::gather::outside::lights;
 use equilux_assemble::gather::sky::Sky;
 use equilux_assemble::gather::surface_piece::SurfacePiece;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{LightKind, LightUnits, Part, PunctualLight, Rgb};
 use equilux_tests::lit::{Lit, lit};
@@ -39,6 +39,8 @@ fn placed(parts: Vec<Part>, size: f64) -> Lit {
         element_size: Some(ElementSize::Metres(size)),
         division: Division::Authored,
         resolution: EXACT,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     lit(&workshop.path("scene.glb"), &wanted)

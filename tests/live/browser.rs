@@ -7,7 +7,7 @@ use equilux_assemble::picture::canvas::Canvas;
 use equilux_assemble::picture::exposure::Exposure;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::oven::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod, prepare};
 use equilux_bake::rays::RayIndex;
 use equilux_bake::treecode::EXACT;
 use equilux_bake::world::World;
@@ -30,6 +30,8 @@ fn world(workshop: &Workshop) -> World {
         element_size: Some(ElementSize::Metres(0.125)),
         division: Division::Authored,
         resolution: EXACT,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     let prepared = prepare(&scene, &preparation).expect("elements");

@@ -4,7 +4,7 @@
 use equilux_assemble::equation::coupling::Coupled;
 use equilux_assemble::placed_parts::PlacedParts;
 use equilux_bake::elements::ElementSize;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::{EXACT, Resolution};
 use equilux_formats::{Rgb, Rows};
 use equilux_tests::lit::coupled;
@@ -126,6 +126,8 @@ fn blocks(file: &Path, cache: &Path, resolution: Resolution) -> (PlacedParts, Ve
         element_size: Some(ElementSize::Metres(0.5)),
         division: Division::Authored,
         resolution,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     let (placed, coupled) = coupled(file, cache, &wanted);

@@ -6,7 +6,7 @@ use equilux_assemble::lightmap::{LightmapOptions, Units};
 use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::oven::prepare::{Division, Preparation, Prepared, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, Prepared, RowMethod, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Element, Part};
 use equilux_tests::model::{Model, Node};
@@ -168,7 +168,14 @@ fn quantised(mut model: Model) -> Model {
 fn prepared(workshop: &Workshop, element_size: Option<f64>, division: Division) -> Prepared {
     let scene = import_scene(&workshop.path("scene.glb")).unwrap_or_else(|error| panic!("{error}"));
     let element_size = element_size.map(ElementSize::Metres);
-    let wanted = Preparation { element_size, division, resolution: EXACT, local_solver: None };
+    let wanted = Preparation {
+        element_size,
+        division,
+        resolution: EXACT,
+        rows: RowMethod::Exact,
+        rays: 256,
+        local_solver: None,
+    };
     prepare(&scene, &wanted).unwrap_or_else(|error| panic!("{error}"))
 }
 

@@ -9,7 +9,7 @@ use equilux_assemble::gather::lights::Lights;
 use equilux_assemble::gather::surface_piece::{SurfacePiece, centre};
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::oven::prepare::{Division, Preparation, prepare};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod, prepare};
 use equilux_bake::treecode::Resolution;
 use equilux_bake::world::World;
 use equilux_formats::{Element, Instance, Rgb};
@@ -37,6 +37,8 @@ pub fn compared(name: &str, size: f64, tolerance: f64) -> Compared {
         element_size: Some(element_size),
         division: Division::Authored,
         resolution,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     let fine = import_scene(&folder.join(name).with_extension("glb")).expect("a scene");

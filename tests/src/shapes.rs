@@ -5,7 +5,9 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::texture::Textures;
-use equilux_formats::{Corners, Geometry, Material, MaterialId, Part, Rgb, Rows, Surface};
+use equilux_formats::{
+    Corners, Geometry, Instance, Material, MaterialId, Part, PartId, Rgb, Rows, Scene, Surface,
+};
 use glam::{DAffine3, DVec3, dvec3};
 
 /// A grey material: reflectance and emission the same in all channels.
@@ -125,4 +127,28 @@ pub fn coupling(world: &World, receivers: usize, senders: &[usize], resolution: 
 /// The exact block of a geometry alone.
 pub fn self_block(geometry: &Geometry) -> Rows {
     coupling(&alone(geometry), 0, &[0], EXACT)
+}
+
+/// A scene of these parts, each where it is.
+pub fn scene_of(parts: Vec<Part>) -> Scene {
+    let instance = |(number, part): (usize, &Part)| Instance {
+        name: format!("{} {number}", part.name),
+        part: PartId::from_index(number),
+        placement: DAffine3::IDENTITY,
+        emission_scale: 1.0,
+        repainted: vec![],
+    };
+    Scene {
+        name: "level".into(),
+        file: "level".into(),
+        sources: vec![],
+        instances: parts.iter().enumerate().map(instance).collect(),
+        parts,
+        cameras: vec![],
+        lights: vec![],
+        origin: DVec3::ZERO,
+        coordinate_step: 0.0,
+        hidden_shells: 0,
+        notes: vec![],
+    }
 }

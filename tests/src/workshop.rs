@@ -9,7 +9,7 @@ use equilux_assemble::run::job::Job;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::EXACT;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -73,6 +73,8 @@ impl Workshop {
             resolution: EXACT,
             element_size: Some(ElementSize::Metres(1.0)),
             division,
+            rows: RowMethod::Exact,
+            rays: 256,
             local_solver: None,
         };
         job.settings.goal.error = 0.0;

@@ -5,7 +5,7 @@ mod means;
 
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
-use equilux_bake::oven::prepare::{Division, Prepared, prepare};
+use equilux_bake::oven::prepare::{Division, Prepared, RowMethod, prepare};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::{Part, Rgb};
 use equilux_tests::model::{Model, Node};
@@ -84,6 +84,8 @@ fn prepared(workshop: &Workshop, element_size: ElementSize, division: Division) 
         element_size: Some(element_size),
         division,
         resolution: EXACT,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     let scene = import_scene(&workshop.path("scene.glb")).unwrap_or_else(|error| panic!("{error}"));

@@ -11,7 +11,7 @@ use equilux_assemble::run::job::Job;
 use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::EXACT;
 use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, gathered, places};
@@ -71,6 +71,8 @@ fn assembled(scene: &Path) -> Table {
         resolution: EXACT,
         element_size: Some(ElementSize::Mesh),
         division: Division::Authored,
+        rows: RowMethod::Exact,
+        rays: 256,
         local_solver: None,
     };
     job.outputs.exact_rows = ExactRows::About(0);

@@ -3,7 +3,7 @@
 use equilux_assemble::outputs::requests::Pictures;
 use equilux_assemble::run::run;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::prepare::{Division, Preparation};
+use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
 use equilux_bake::treecode::Resolution;
 use equilux_tests::table::Table;
 use equilux_tests::truth::{Errors, Found};
@@ -23,8 +23,14 @@ fn light_at_points_is_that_of_path_tracing_whatever_the_elements() {
         let division = Division::Authored;
         let mut job = workshop.job(Division::Authored);
         job.scene = folder.join(name).with_extension("glb");
-        job.settings.preparation =
-            Preparation { element_size: None, division, resolution, local_solver: None };
+        job.settings.preparation = Preparation {
+            element_size: None,
+            division,
+            resolution,
+            rows: RowMethod::Exact,
+            rays: 256,
+            local_solver: None,
+        };
         job.outputs.pictures = Pictures::None;
         job.outputs.points = Some(folder.join("truth.csv"));
         run(&job, &Monitor::default()).expect("a run");
