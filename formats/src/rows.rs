@@ -4,10 +4,13 @@
 //! Row i holds F_ij = (1/π) ∫_{S_j} V cosθ_i cosθ_j / r² dy for the senders j that receiver i can see; a sender is an
 //! element, or a cluster of elements (see [`crate::ClusterTree`]) whose form factor is as exact as an element's.
 
+mod counted;
 mod products;
 mod row_sums;
 
 use crate::rgb::Rgb;
+pub use counted::CountedRow;
+use counted::counted;
 use products::products;
 pub use row_sums::RowSumDefect;
 use serde::{Deserialize, Serialize};
@@ -35,15 +38,6 @@ pub struct RowGroup {
     pub values: Vec<f64>,
     /// Number of receivers.
     pub receivers: usize,
-}
-
-/// A row of counted rays, from which blocks are built.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct CountedRow {
-    /// Senders and the rays that end on them.
-    pub counts: Vec<(u32, u16)>,
-    /// The number of rays that the row's form factors are shares of.
-    pub rays: u32,
 }
 
 /// A block of form factors, `receivers × senders`.
@@ -126,22 +120,6 @@ impl Rows {
             block.push(group);
         }
         block
-    }
-
-    /// A block with `senders` columns from counted rows, receivers in order.
-    pub fn from_counts(senders: usize, rows: impl IntoIterator<Item = CountedRow>) -> Self {
-        let mut groups = vec![Extent { receiver: 0, column: 0, value: 0 }];
-        let (mut columns, mut counts, mut rays) = (vec![], vec![], vec![]);
-        for row in rows {
-            for (column, count) in row.counts {
-                assert!((column as usize) < senders, "a column past {senders} senders");
-                columns.push(column);
-                counts.push(count);
-            }
-            rays.push(row.rays);
-            groups.push(Extent { receiver: rays.len(), column: columns.len(), value: columns.len() });
-        }
-        Self { senders: senders as u32, groups, columns, values: Values::Counts { counts, rays } }
     }
 
     fn push(&mut self, group: RowGroup) {
@@ -239,35 +217,6 @@ impl Rows {
         let pairs =
             columns.iter().enumerate().map(move |(k, &c)| (c as usize, self.value(first + k) * scale));
         pairs.filter(|&(_, value)| value != 0.0)
-    }
-
-    /// A row of counted rays. Panics if rows are not counted.
-    pub fn counted_row(&self, receiver: usize) -> CountedRow {
-        let Values::Counts { counts, rays } = &self.values else { panic!("rows are not counted") };
-        let counts = counts[self.range_of(receiver)].iter().copied();
-        let columns = self.columns_of(receiver).iter().copied();
-        CountedRow { counts: columns.zip(counts).collect(), rays: rays[receiver] }
-    }
-
-    /// The number of rays that a row's form factors are shares of, as a share of `rays`; 1 if rows are not counted.
-    pub fn share_of_rays(&self, receiver: usize, rays: u32) -> f64 {
-        match &self.values {
-            Values::Counts { rays: of, .. } => f64::from(of[receiver]) / f64::from(rays),
-            Values::Full(_) | Values::Single(_) => 1.0,
-        }
-    }
-
-    /// The columns before `column`, and those from it on, as two blocks of counted rows. Panics if rows are not counted.
-    pub fn parted(&self, column: usize) -> [Self; 2] {
-        let rows: Vec<CountedRow> = (0..self.receivers()).map(|row| self.counted_row(row)).collect();
-        let first = |row: &CountedRow| row.counts.partition_point(|&(c, _)| (c as usize) < column);
-        let before = rows.iter().map(|row| CountedRow { counts: row.counts[..first(row)].to_vec(), ..*row });
-        let moved = |&(c, count): &(u32, u16)| (c - column as u32, count);
-        let after = rows.iter().map(|row| {
-            let counts = row.counts[first(row)..].iter().map(moved).collect();
-            CountedRow { counts, ..*row }
-        });
-        [Self::from_counts(column, before), Self::from_counts(self.senders() - column, after)]
     }
 
     /// The senders that any receiver sees, in no order and with repetitions.
@@ -436,17 +385,6 @@ impl Rows {
             _ => Ok(block),
         }
     }
-}
-
-/// The irradiance of a counted row, W/m²: Σ_j k_ij B_j over the number of its rays.
-fn counted(columns: &[u32], counts: &[u16], rays: u32, radiosity: &[Rgb]) -> Rgb {
-    let mut sum = [0.0; 3];
-    for (&column, &count) in columns.iter().zip(counts) {
-        let Rgb([r, g, b]) = radiosity[column as usize];
-        let count = f64::from(count);
-        sum = [sum[0] + count * r, sum[1] + count * g, sum[2] + count * b];
-    }
-    Rgb(sum) / f64::from(rays.max(1))
 }
 
 /// Adds a row's values, times its weight, to the sums of its columns.

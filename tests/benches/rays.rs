@@ -4,7 +4,8 @@
 //! a row. Every room is a part, traced alone and then in the level.
 
 use equilux_bake::monitor::Monitor;
-use equilux_bake::rays::counts::{SceneColumns, alone, placed};
+use equilux_bake::rays::alone::alone;
+use equilux_bake::rays::counts::{SceneColumns, placed};
 use equilux_bake::rays::samples::Samples;
 use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::rays::surfaces::Surfaces;

@@ -12,31 +12,16 @@ mod viewer;
 use equilux_assemble::lightmap::Lightmap;
 use equilux_assemble::lightmap::atlas::Tile;
 use equilux_assemble::lightmap::texels::bilinear;
-use equilux_formats::{Instance, Part, PartId, Rgb, Scene};
+use equilux_formats::{Instance, Part, Rgb, Scene};
+use equilux_tests::shapes::scene_of;
 use glam::{DAffine3, DVec3};
 
 /// A scene of one part in these places.
 fn scene(part: Part, placements: &[DAffine3]) -> Scene {
-    let instance = |&placement: &DAffine3| Instance {
-        name: "instance".into(),
-        part: PartId(0),
-        placement,
-        emission_scale: 1.0,
-        repainted: vec![],
-    };
-    Scene {
-        name: "scene".into(),
-        file: "scene.glb".into(),
-        sources: vec![],
-        parts: vec![part],
-        instances: placements.iter().map(instance).collect(),
-        cameras: vec![],
-        lights: vec![],
-        origin: DVec3::ZERO,
-        coordinate_step: 0.0,
-        hidden_shells: 0,
-        notes: vec![],
-    }
+    let mut scene = scene_of(vec![part]);
+    let instance = |&placement: &DAffine3| Instance { placement, ..scene.instances[0].clone() };
+    scene.instances = placements.iter().map(instance).collect();
+    scene
 }
 
 /// What a bilinear lookup gives for a point of a tile's chart in one of its planes, in the coordinates of its part.

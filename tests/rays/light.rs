@@ -41,7 +41,7 @@ fn closure(solved: &Solved) -> f64 {
 fn a_furnace_has_one_radiosity() {
     let solved = solved(&scene_of(room_with_meshes(0.75, 1.0)), 0.25, 64);
     let elements = solved.elements().iter().zip(solved.radiosity());
-    // What the crate covers altogether is dark, and nobody sees it.
+    // Elements that the crate covers whole are dark and in nobody's sight.
     let is_under = |p: DVec3| p.y < 1e-6 && p.x > 1.6 && p.x < 2.23 && p.z > 1.9 && p.z < 2.41;
     let seen = elements.filter(|(element, _)| !is_under(element.centroid));
     let worst = seen.map(|(_, b)| (b[0] - 4.0).abs()).fold(0.0, f64::max);

@@ -4,7 +4,7 @@
 use crate::equation::Equation;
 use crate::gather::outside::frame;
 use crate::gather::sky::SkyCells;
-use equilux_bake::rays::counts::replicas;
+use equilux_bake::rays::replicas::replicas;
 use equilux_bake::rays::samples::Samples;
 use equilux_bake::rays::scenery::Landing;
 use equilux_bake::rays::surfaces::End;

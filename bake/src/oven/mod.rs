@@ -12,7 +12,7 @@ use crate::equilibrium::endless::endless_in_block;
 use crate::equilibrium::outside::boundary_responses;
 use crate::equilibrium::{LocalSystem, factorise};
 use crate::monitor::Monitor;
-use crate::rays::counts::{AloneRows, alone};
+use crate::rays::alone::{AloneRows, alone};
 use crate::rays::samples::Samples;
 use crate::rays::surfaces::Surfaces;
 use crate::treecode::{Request, Resolution, block};

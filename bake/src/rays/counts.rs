@@ -1,45 +1,19 @@
-//! Rows as whole numbers: what the rays of an unknown end on, first in its own part and then in a scene.
+//! Rows of an instance in a scene, as whole numbers: what its rays end on.
 //!
 //! A scene adds to the row of the part alone what escaped rays meet, and replaces what now stands behind something else. It
 //! is the same row as from nothing, since a ray meets its own part in the same way in both.
 
 use super::samples::Samples;
 use super::scenery::{Landing, Scenery};
-use super::surfaces::{End, Surfaces};
+use super::surfaces::End;
+use super::tracing::{Scratch, tallied, traced};
 use super::wide_tree::Ray;
 use crate::geometry::aabb::Aabb;
 use crate::monitor::Monitor;
 use equilux_formats::baked::Escapes;
 use equilux_formats::rows::CountedRow;
-use equilux_formats::{Error, Result, Rgb, Rows};
+use equilux_formats::{Result, Rows};
 use glam::DVec3;
-use rayon::prelude::*;
-
-/// The rows of a part on its own.
-#[derive(Debug, Clone, PartialEq)]
-pub struct AloneRows {
-    /// F_kk, `unknowns × unknowns`.
-    pub self_block: Rows,
-    /// What the rays may still meet in a scene.
-    pub escapes: Escapes,
-}
-
-/// Traces all rows of a part on its own. Fails if the monitor was stopped.
-pub fn alone(surfaces: &Surfaces, samples: &Samples, monitor: &Monitor) -> Result<AloneRows> {
-    let rows = traced(surfaces.unknowns(), monitor, |unknown, scratch| {
-        // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
-        pulp::Arch::new().dispatch(Alone { surfaces, samples, unknown, scratch })
-    })?;
-    let mut escapes = Escapes::default();
-    let mut counted = Vec::with_capacity(rows.len());
-    for row in rows {
-        escapes.escaped.extend(row.escaped);
-        escapes.covered.push(row.covered);
-        escapes.reach.push(row.reach);
-        counted.push(CountedRow { counts: row.counts, rays: samples.rays() as u32 - u32::from(row.covered) });
-    }
-    Ok(AloneRows { self_block: Rows::from_counts(surfaces.unknowns(), counted), escapes })
-}
 
 /// What the columns of a scene's rows stand for: the unknowns of all instances, then the cells of the sky.
 #[derive(Clone, Copy)]
@@ -116,104 +90,6 @@ pub fn placed(
     let others = rows.into_iter().map(|row| CountedRow { rays: rays(&row), counts: row.others });
     let others = Rows::from_counts(columns.unknowns + columns.cells, others);
     Ok(PlacedRows { self_block: corrected, others, traced })
-}
-
-/// Irradiance of a row, W/m², as several independent sets of its rays find it: the mean over the rays of `light` of what they end
-/// on and their direction in the scene.
-pub fn replicas<const N: usize>(
-    scenery: &Scenery,
-    samples: &Samples,
-    (instance, unknown): (usize, usize),
-    light: impl Fn(Option<Landing>, DVec3) -> Rgb,
-) -> [Rgb; N] {
-    let emitters = scenery.surfaces_of(instance).emitters(unknown);
-    let (near, placement) = (emitters.bounds().diagonal(), scenery.placement_of(instance));
-    std::array::from_fn(|replica| {
-        let mut rays = Vec::new();
-        emitters.rays(samples, unknown as u32 ^ (replica as u32) << 28, &mut rays);
-        let (mut sum, mut open) = (Rgb::BLACK, 0.0);
-        for ray in &rays {
-            let landing = scenery.land(instance, ray, near);
-            if landing.is_none_or(|landing| landing.end != End::Covered) {
-                sum += light(landing, placement.transform_vector3(ray.direction));
-                open += 1.0;
-            }
-        }
-        if open > 0.0 { sum / open } else { sum }
-    })
-}
-
-/// Reused memory of a thread.
-#[derive(Debug, Default)]
-struct Scratch {
-    rays: Vec<Ray>,
-    own: Vec<u32>,
-    others: Vec<u32>,
-}
-
-/// The rows of all unknowns, in order, on all threads.
-fn traced<T: Send>(
-    unknowns: usize,
-    monitor: &Monitor,
-    row: impl Fn(usize, &mut Scratch) -> T + Sync,
-) -> Result<Vec<T>> {
-    let found: Vec<Option<T>> = (0..unknowns)
-        .into_par_iter()
-        .map_init(Scratch::default, |scratch, unknown| {
-            if monitor.stopped() {
-                return None;
-            }
-            monitor.advance(1);
-            Some(row(unknown, scratch))
-        })
-        .collect();
-    found.into_iter().collect::<Option<Vec<T>>>().ok_or(Error::Stopped)
-}
-
-/// The row of an unknown in its part alone.
-struct Alone<'a> {
-    surfaces: &'a Surfaces,
-    samples: &'a Samples,
-    unknown: usize,
-    scratch: &'a mut Scratch,
-}
-
-struct AloneRow {
-    counts: Vec<(u32, u16)>,
-    covered: u16,
-    escaped: Vec<u64>,
-    reach: [f32; 6],
-}
-
-impl pulp::NullaryFnOnce for Alone<'_> {
-    type Output = AloneRow;
-
-    #[inline(always)]
-    fn call(self) -> AloneRow {
-        let Self { surfaces, samples, unknown, scratch: Scratch { rays, own, .. } } = self;
-        surfaces.emitters(unknown).rays(samples, unknown as u32, rays);
-        own.clear();
-        let near = surfaces.emitters(unknown).bounds().diagonal();
-        let (mut covered, mut escaped) = (0, vec![0; rays.len().div_ceil(64)]);
-        let mut reach = Aabb::EMPTY;
-        for (number, ray) in rays.iter().enumerate() {
-            reach = reach.union(Aabb { low: ray.origin, high: ray.origin });
-            let hit = surfaces.tree.first(ray, f64::INFINITY);
-            // In a scene something may cover the start of a ray that escapes.
-            let end = ray.at(hit.map_or(near, |hit| hit.t));
-            reach = reach.union(Aabb { low: end, high: end });
-            let Some(hit) = hit else {
-                escaped[number / 64] |= 1 << (number % 64);
-                continue;
-            };
-            match surfaces.end(ray, &hit, near) {
-                End::Element(element) => own.push(surfaces.unknown_of(element)),
-                End::Covered => covered += 1,
-                End::Black => {}
-            }
-        }
-        AloneRow { counts: tallied(own), covered, escaped, reach: rounded(reach) }
-    }
 }
 
 /// The row of an unknown in a scene.
@@ -322,19 +198,6 @@ impl pulp::NullaryFnOnce for Escaped<'_> {
     }
 }
 
-/// How often each number occurs, numbers rising.
-fn tallied(hits: &mut [u32]) -> Vec<(u32, u16)> {
-    hits.sort_unstable();
-    hits.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u16)).collect()
-}
-
-/// A box in f32, no smaller.
-fn rounded(bounds: Aabb) -> [f32; 6] {
-    let [a, b, c] = bounds.low.to_array().map(|x| (x as f32).next_down());
-    let [d, e, f] = bounds.high.to_array().map(|x| (x as f32).next_up());
-    [a, b, c, d, e, f]
-}
-
 /// The box around what the rays of all rows reach.
 fn whole_reach(escapes: &Escapes) -> Aabb {
     escapes.reach.iter().map(reach).fold(Aabb::EMPTY, Aabb::union)
@@ -346,6 +209,7 @@ fn reach(&[a, b, c, d, e, f]: &[f32; 6]) -> Aabb {
 
 #[cfg(test)]
 mod tests {
+    use super::super::alone::{AloneRows, alone};
     use super::super::shapes::{part, room, similarity, soup};
     use super::*;
     use proptest::prelude::*;

@@ -9,12 +9,13 @@
 //! wide_tree, plates → face_tree     the first face that a ray meets in a part, in its coordinates; lanes: eight numbers
 //! element_grid → surfaces           the unknown at a place on a face
 //! scenery                           the same among placed parts
-//! counts                            what the rays of a row end on
+//! alone → counts                    what the rays of a row end on, in its part and in a scene; replicas: how uncertain that is
 //! sources                           form factors to small, bright polygons, by shadow rays
 //! ```
 //!
 //! `index` finds first hits among elements, for pictures, and as the independent check of all of these.
 
+pub mod alone;
 pub mod counts;
 mod element_grid;
 mod face_tree;
@@ -22,6 +23,7 @@ pub mod hemisphere;
 mod index;
 mod lanes;
 mod plates;
+pub mod replicas;
 pub mod samples;
 pub mod scenery;
 #[cfg(test)]
@@ -29,6 +31,7 @@ mod shapes;
 mod sobol;
 pub mod sources;
 pub mod surfaces;
+mod tracing;
 mod wide_tree;
 
 pub use index::{Hit, RayIndex};
