@@ -74,8 +74,8 @@ fn closed_rooms_absorb_what_lamps_emit() {
         let lamp = (dvec3(1.2, 1.9 - gap, 1.2), dvec3(1.8, 2.0 - gap, 1.8));
         parts.push(solid(grey(0.5, 10.0), lamp.0, lamp.1));
         let closure = closure(&solved(&scene_of(parts), 0.2, 256));
-        // Lamps and rows each have noise, of a mean over about a thousand unknowns. Measured: .24 %.
-        assert!((closure - 1.0).abs() <= 5e-3, "{closure} of the power absorbed, {gap} m under the ceiling");
+        // Noise of the mean over about a thousand unknowns, from lamps and from rows. Measured: .1 %.
+        assert!((closure - 1.0).abs() <= 2e-3, "{closure} of the power absorbed, {gap} m under the ceiling");
     }
 }
 

@@ -211,6 +211,7 @@ fn reach(&[a, b, c, d, e, f]: &[f32; 6]) -> Aabb {
 mod tests {
     use super::super::alone::{AloneRows, alone};
     use super::super::shapes::{part, room, similarity, soup};
+    use super::super::surfaces::Surfaces;
     use super::*;
     use proptest::prelude::*;
     use std::sync::{Arc, LazyLock};

@@ -52,6 +52,11 @@ impl Emitters {
         Self { bounds: Aabb::around(corners), pieces, until }
     }
 
+    /// Whether it is one parallelogram.
+    pub fn is_parallelogram(&self) -> bool {
+        matches!(self.pieces.as_slice(), [piece] if piece.is_parallelogram)
+    }
+
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
         self.bounds

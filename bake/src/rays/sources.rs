@@ -45,6 +45,9 @@ const GO_ON: u32 = 8;
 /// The finest grid of points at which the contour is taken, along a side.
 const FINEST: usize = 16;
 
+/// The fewest points on an unknown that is no parallelogram.
+const FEWEST_SCATTERED: usize = 16;
+
 /// Below this many there is one point.
 const ONE_POINT: f64 = 0.3;
 
@@ -93,7 +96,7 @@ pub fn mean_over(
 ) -> Rgb {
     let receiver = Receiver { scenery, instance, unknown };
     let at = |k: u32| {
-        let [u, v, ..] = self::places(k, receiver.seed(0));
+        let (u, v) = receiver.scattered(k as usize);
         let (place, normal) = receiver.place(u, v);
         light(place, normal)
     };
@@ -172,9 +175,13 @@ impl Receiver<'_> {
             let off = if k.is_multiple_of(2) { 0.211_324_865_405_187_1 } else { 0.788_675_134_594_812_9 };
             if points == 1 { 0.5 } else { ((k / 2) as f64 + off) / pairs as f64 }
         };
+        // A grid would meet only some pieces of a patch, and not the middle of a triangle.
+        let is_grid = emitters.is_parallelogram();
+        let count = if is_grid { points * points } else { FEWEST_SCATTERED.max(points * points) };
         let mut sum = 0.0;
-        for k in 0..points * points {
-            let (point, normal) = self.place(at(k % points), at(k / points));
+        for k in 0..count {
+            let (u, v) = if is_grid { (at(k % points), at(k / points)) } else { self.scattered(k) };
+            let (point, normal) = self.place(u, v);
             if polygon.normal.dot(point - corners[0]) <= 0.0 {
                 continue;
             }
@@ -185,7 +192,13 @@ impl Receiver<'_> {
                 Clipped::None => 0.0,
             };
         }
-        sum / (points * points) as f64
+        sum / count as f64
+    }
+
+    /// The kth of places that are spread evenly over it, whatever its form.
+    fn scattered(&self, k: usize) -> (f64, f64) {
+        let [u, v, ..] = places(k as u32, self.seed(0));
+        (u, v)
     }
 
     /// A/π d², at most 1.
