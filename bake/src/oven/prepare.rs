@@ -56,7 +56,7 @@ pub const TOLERANCE: f64 = 0.01;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum RowMethod {
-    /// Exact rows with --tolerance 0 and for a few large faces, otherwise rays
+    /// Exact rows with --tolerance 0, otherwise rays
     #[default]
     Auto,
     /// Exact form factors at the centre of each element; the cost of a row grows with the faces in view
@@ -65,14 +65,11 @@ pub enum RowMethod {
     Rays,
 }
 
-/// Scenes of no more faces than this get exact rows: they take no longer than rays, and have no noise.
-const FEW_FACES: usize = 64;
-
 impl Preparation {
-    /// The resolution for a scene of so many faces.
-    fn resolution_for(&self, faces: usize) -> Resolution {
+    /// The resolution of form factors, and whether rows are counted rays.
+    fn resolution(&self) -> Resolution {
         let by_rays = match self.rows {
-            RowMethod::Auto => self.resolution != EXACT && faces > FEW_FACES,
+            RowMethod::Auto => self.resolution != EXACT,
             RowMethod::Exact => false,
             RowMethod::Rays => true,
         };
@@ -147,8 +144,7 @@ pub fn prepare(scene: &Scene, wanted: &Preparation) -> Result<Prepared> {
     let scales = largest_scales(scene);
     let element_size = wanted.element_size.unwrap_or_else(|| suitable_size(scene, &scales));
     refuse_lost_digits(scene, element_size, &scales)?;
-    let faces = |instance: &Instance| scene.parts[instance.part.index()].surfaces.len();
-    let resolution = wanted.resolution_for(scene.instances.iter().map(faces).sum());
+    let resolution = wanted.resolution();
     let mut parts = Vec::new();
     for (part, &scale) in scene.parts.iter().zip(&scales) {
         let size = part.element_size.map_or(element_size, ElementSize::Metres);
