@@ -95,6 +95,11 @@ impl Store {
         }
     }
 
+    /// Whether there is a file for the value under this key.
+    pub fn has<T: Stored>(&self, key: &Key) -> bool {
+        self.path(T::KIND, self.target(key)).exists()
+    }
+
     /// Reads the values under these keys on all threads, for one later [`Store::load`] each. Missing and damaged files
     /// are left to `load`.
     pub fn read_ahead<T: Stored>(&self, keys: &[Key]) {

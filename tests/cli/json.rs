@@ -19,6 +19,7 @@ const KEYS: [&str; 57] = [
     "/blocks/coupling_reused",
     "/blocks/coupling_left_out",
     "/form_factors_computed",
+    "/rays_traced",
     "/seconds/step1",
     "/seconds/step2",
     "/seconds/step3",

@@ -62,7 +62,10 @@ fn turns(workshop: &Workshop) -> Vec<Turn> {
     let prepared = prepare(&scene, &wanted).expect("parts");
     let store = Store::open(workshop.path("cache")).expect("a cache");
     // Keys may share a turn.
-    keys_of(&prepared, &store).iter().filter_map(|key| store.try_turn(key)).collect()
+    keys_of(&prepared, &store, &workshop.path("scene.glb"))
+        .iter()
+        .filter_map(|key| store.try_turn(key))
+        .collect()
 }
 
 /// Long enough for all four parts several times over.

@@ -84,7 +84,7 @@ proptest! {
             instances.push(instance("bench", 1, DAffine3::from_mat3_translation(turn, at)));
         }
         let placed = PlacedParts::new(baked, instances);
-        let coupler = Coupler { placed: &placed, store: &store, file: Path::new("scene"), resolution: EXACT, monitor: &monitor };
+        let coupler = Coupler::new(&oven, &placed);
         let coupled: Vec<_> =
             (0..4).map(|k| coupler.couple(k).expect("no error")).collect();
         for (k, own) in coupled.iter().enumerate().skip(1) {

@@ -1,5 +1,6 @@
 //! Rows by rays: physics in closed rooms, then what a cache, threads and edits may and may not change.
 
+mod edits;
 mod kept;
 mod light;
 

@@ -5,6 +5,7 @@ pub mod averages;
 pub mod cases;
 pub mod corridors;
 pub mod curved;
+pub mod edited;
 pub mod levels;
 pub mod lit;
 pub mod measure;

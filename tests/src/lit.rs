@@ -77,7 +77,7 @@ fn coupled_scene(scene: &Scene, cache: &Path, wanted: &Preparation) -> (PlacedPa
     let oven = Oven { store: &store, file, resolution, monitor: &monitor };
     let parts = prepared.parts.iter().map(|part| oven.bake(part).expect("baked"));
     let placed = PlacedParts::new(parts.collect(), prepared.instances);
-    let coupler = Coupler { placed: &placed, store: &store, file, resolution, monitor: &monitor };
+    let coupler = Coupler::new(&oven, &placed);
     let couple = |k: usize| coupler.couple(k).expect("coupled");
     let coupled = (0..placed.instances.len()).map(couple).collect();
     (placed, coupled)

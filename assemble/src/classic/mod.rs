@@ -23,7 +23,7 @@ use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::cached::Origin;
 use equilux_bake::oven::prepare::{Division, Preparation, Prepared, PreparedPart, RowMethod, prepare};
-use equilux_bake::oven::{Baked, geometry_manifest};
+use equilux_bake::oven::{Baked, Oven, geometry_manifest};
 use equilux_bake::treecode::EXACT;
 use equilux_formats::baked::{BoundaryResponses, Escapes, LocalEquilibrium};
 use equilux_formats::{BakedPart, Error, LightUnits, Optics, Result, Rgb, Rows, Store};
@@ -139,7 +139,8 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
         Error::new(std::env::temp_dir(), found, "a folder for temporary files", "set TMPDIR to one")
     })?;
     let store = Store::open(temporary_cache.path())?;
-    let coupler = Coupler { placed: &placed, store: &store, file: &job.scene, resolution: EXACT, monitor };
+    let oven = Oven { store: &store, file: &job.scene, resolution: EXACT, monitor };
+    let coupler = Coupler::new(&oven, &placed);
     let direct = direct(&coupler, &lights)?;
     let each: Vec<Optics> = (0..placed.instances.len())
         .map(|k| driven(&placed.optics_of(k), &direct.irradiance[k], &direct.apart[k]))

@@ -40,7 +40,7 @@ struct Arguments {
     /// Choose element size and tolerance so that the error of light at points of surfaces, as in --lightmaps and
     /// --points, is at most this, as a root mean square relative to the mean: solves with ever finer elements until
     /// the light converges
-    #[arg(long, value_name = "ERROR", value_parser = values::target_error, conflicts_with_all = ["element_size", "tolerance"])]
+    #[arg(long, value_name = "ERROR", value_parser = values::target_error, conflicts_with_all = ["element_size", "tolerance", "rays"])]
     target_error: Option<f64>,
     /// Assemble again whenever a file of the scene changes, until Ctrl-C; prints a line or two for each run
     #[arg(long)]

@@ -1,16 +1,21 @@
 //! The blocks of an instance by rays: what its escaped rays meet in the scene, and its self block where another instance may
-//! stand in between. Whole numbers, the same as from nothing.
+//! stand in between. Whole numbers, the same as from nothing, also where an earlier block is brought up to date.
 
 use crate::equation::coupling::{Corrected, Coupled, Coupler};
+use crate::equation::earlier::EarlierScene;
 use crate::gather::sky::SkyCells;
 use crate::placed_parts::PlacedParts;
-use equilux_bake::oven::cached::{Origin, cached};
-use equilux_bake::oven::keys::{CORRECTED, COUPLING};
+use equilux_bake::oven::cached::{NewValue, Origin, cached_or_revised};
+use equilux_bake::oven::placed_keys::{CORRECTED, COUPLING};
 use equilux_bake::rays::counts::{PlacedRows, SceneColumns, may_be_blocked, placed};
+use equilux_bake::rays::recounts::{Edit, Known, Side};
 use equilux_bake::rays::samples::Samples;
 use equilux_bake::rays::scenery::Scenery;
+use equilux_formats::fingerprint::Key;
+use equilux_formats::store::Lookup;
 use equilux_formats::{Result, Rows};
 use glam::DVec3;
+use rayon::prelude::*;
 use std::cell::OnceCell;
 use std::time::{Duration, Instant};
 
@@ -18,67 +23,187 @@ use std::time::{Duration, Instant};
 #[derive(Debug)]
 pub struct RayTracer<'a> {
     /// The surfaces in their places.
-    pub scenery: &'a Scenery,
+    scenery: &'a Scenery,
     /// The rays of a row.
-    pub samples: Samples,
-    /// The first column of each instance.
+    samples: Samples,
+    /// The first column of each instance, and then their number.
     first: Vec<u32>,
+    /// The scene of the last run, if it was another, with its columns.
+    earlier: Option<(EarlierScene, Vec<u32>)>,
+}
+
+/// The cell of the sky in a direction.
+fn cell(direction: DVec3) -> u32 {
+    SkyCells::towards(direction) as u32
+}
+
+/// A scene with columns.
+fn side<'a>(scenery: &'a Scenery, first: &'a [u32]) -> Side<'a> {
+    let (&unknowns, first) = first.split_last().expect("the number of columns");
+    (scenery, SceneColumns { first, unknowns: unknowns as usize, cells: SkyCells::COUNT, cell: &cell })
+}
+
+/// Where each of so many columns begins, and the number of all.
+fn starts(counts: impl Iterator<Item = usize>) -> Vec<u32> {
+    let end = counts.scan(0, |end, count| {
+        *end += count as u32;
+        Some(*end)
+    });
+    std::iter::once(0).chain(end).collect()
 }
 
 impl<'a> RayTracer<'a> {
-    /// These placed parts, with so many rays a row.
-    pub fn new(placed: &'a PlacedParts, scenery: &'a Scenery, rays: u32) -> Self {
-        let first = (0..placed.instances.len()).map(|k| placed.columns_of(k).start as u32).collect();
-        Self { scenery, samples: Samples::new(rays), first }
+    /// The placed parts of a coupler, with so many rays a row.
+    pub fn new(coupler: &Coupler<'a>, scenery: &'a Scenery, rays: u32) -> Self {
+        let placed: &PlacedParts = coupler.placed;
+        let first = starts((0..placed.instances.len()).map(|k| placed.columns_of(k).len()));
+        let earlier = EarlierScene::last(coupler, scenery).map(|earlier| {
+            let counts = (0..earlier.stays.len()).map(|k| earlier.keys.part_of(k).senders);
+            let first = starts(counts);
+            (earlier, first)
+        });
+        let tracer = Self { scenery, samples: Samples::new(rays), first, earlier };
+        tracer.read_ahead(coupler);
+        tracer
+    }
+
+    /// Reads the blocks of the earlier scene on all threads, where those of the present one are missing.
+    fn read_ahead(&self, coupler: &Coupler) {
+        let Some((earlier, _)) = &self.earlier else { return };
+        let blocks = (0..earlier.stays.len()).into_par_iter();
+        let missing = |&(present, _): &(Key, Key)| !coupler.store.has::<Rows>(&present);
+        let keys = blocks
+            .filter_map(|k| Some((k, earlier.stays[k]?)))
+            .flat_map_iter(|(k, now)| {
+                [COUPLING, CORRECTED]
+                    .map(|what| (coupler.manifest(now, what).key(), earlier.keys.manifest(k, what).key()))
+            })
+            .filter(missing)
+            .map(|(_, key)| key);
+        coupler.store.read_ahead::<Rows>(&keys.collect::<Vec<_>>());
+    }
+
+    /// What changed since the last run; none if nothing did, or too much.
+    pub fn edit(&self) -> Option<Edit<'_>> {
+        let (earlier, first) = self.earlier.as_ref()?;
+        Some(Edit::new(side(&earlier.scenery, first), side(self.scenery, &self.first), &earlier.stays))
     }
 }
 
+/// New rows of an instance, and those that they were made from.
+struct Traced {
+    rows: PlacedRows,
+    earlier: Option<Earlier>,
+}
+
+/// The blocks of an instance in the earlier scene.
+struct Earlier {
+    number: usize,
+    self_block: Option<Rows>,
+    others: Rows,
+    /// Of the coupling, and of the self block.
+    keys: [Key; 2],
+}
+
 impl Coupler<'_> {
-    /// Trace or read the blocks of one instance. Fails if the monitor was stopped.
-    pub fn couple_by_rays(&self, instance: usize, tracer: &RayTracer) -> Result<Coupled> {
+    /// Trace or read the blocks of one instance. `edit`: of the tracer. Fails if the monitor was stopped.
+    pub fn couple_by_rays(
+        &self,
+        instance: usize,
+        tracer: &RayTracer,
+        edit: Option<&Edit>,
+    ) -> Result<Coupled> {
         let part = &self.placed.part_of(instance).part;
         let (traced, time) = (OnceCell::new(), OnceCell::new());
-        let rows = || -> Result<&PlacedRows> {
+        let rows = || -> Result<&Traced> {
             if traced.get().is_none() {
                 let start = Instant::now();
-                let name = &self.placed.instances[instance].name;
-                let count = self.placed.unknowns_of(instance);
-                self.monitor.begin(format!("rays of {name}"), count, count as f64);
-                let columns = SceneColumns {
-                    first: &tracer.first,
-                    unknowns: self.placed.columns(),
-                    cells: SkyCells::COUNT,
-                    cell: &|direction: DVec3| SkyCells::towards(direction) as u32,
-                };
-                let alone = (&part.self_block, &part.escapes);
-                let found = placed(tracer.scenery, &tracer.samples, instance, alone, columns, self.monitor)?;
+                let _ = traced.set(self.traced(instance, tracer, edit)?);
                 let _ = time.set(start.elapsed() * rayon::current_num_threads() as u32);
-                let _ = traced.set(found);
             }
             Ok(traced.get().expect("just traced"))
         };
-        let stored = |what: &str, value: &dyn Fn(&PlacedRows) -> Rows| {
-            let (name, manifest) = (self.name(instance, what), self.manifest(instance, what));
-            cached(self.store, &name, &manifest, self.monitor, || rows().map(value))
-        };
-        let (others, origin) = stored(COUPLING, &|rows| rows.others.clone())?;
+        let (others, origin) = self.stored(instance, COUPLING, || {
+            let Traced { rows, earlier } = rows()?;
+            Ok(made(rows.others.clone(), earlier.as_ref().map(|e| (Some(&e.others), e.keys[0]))))
+        })?;
         let corrected = may_be_blocked(tracer.scenery, instance, &part.escapes).then(|| {
-            let own = |rows: &PlacedRows| rows.self_block.clone().unwrap_or_else(|| part.self_block.clone());
-            stored(CORRECTED, &own)
+            self.stored(instance, CORRECTED, || {
+                let Traced { rows, earlier } = rows()?;
+                let own = rows.self_block.clone().unwrap_or_else(|| part.self_block.clone());
+                Ok(made(own, earlier.as_ref().map(|e| (e.self_block.as_ref(), e.keys[1]))))
+            })
         });
         let corrected = corrected.transpose()?.map(|block| self.corrected(instance, block)).transpose()?;
         let [coupling, sky] = others.parted(self.placed.columns());
-        let traced = traced.get();
-        let computed_by_row = traced.map_or(vec![], |rows| rows.traced.clone());
+        let computed_by_row = traced.get().map_or(vec![], |traced| traced.rows.traced.clone());
+        let rays = computed_by_row.iter().map(|&rays| rays as usize).sum();
+        let is_new = !origin.is_reused();
         Ok(Coupled {
+            computed: if is_new { coupling.stored() + sky.stored() } else { 0 },
             coupling,
             sky: Some(sky),
             origin,
-            computed: computed_by_row.iter().map(|&rays| rays as usize).sum(),
             computed_by_row,
+            rays,
             corrected,
             time: time.get().copied().unwrap_or(Duration::ZERO),
         })
+    }
+
+    /// A block of an instance, read or made.
+    fn stored(
+        &self,
+        instance: usize,
+        what: &str,
+        make: impl FnOnce() -> Result<NewValue<Rows>>,
+    ) -> Result<(Rows, Origin)> {
+        let (name, manifest) = (self.name(instance, what), self.manifest(instance, what));
+        cached_or_revised(self.store, &name, &manifest, self.monitor, make)
+    }
+
+    /// The rows of an instance, brought up to date or from nothing.
+    fn traced(&self, instance: usize, tracer: &RayTracer, edit: Option<&Edit>) -> Result<Traced> {
+        let part = &self.placed.part_of(instance).part;
+        let name = &self.placed.instances[instance].name;
+        let count = self.placed.unknowns_of(instance);
+        self.monitor.begin(format!("rays of {name}"), count, count as f64);
+        if let Some((edit, earlier)) = edit.zip(self.earlier(instance, tracer)) {
+            let known = Known {
+                baked: &part.self_block,
+                escapes: &part.escapes,
+                self_block: earlier.self_block.as_ref(),
+                others: &earlier.others,
+            };
+            let numbers = [earlier.number, instance];
+            let rows = edit.recounted(&tracer.samples, numbers, known, self.monitor)?;
+            let same = || PlacedRows {
+                self_block: earlier.self_block.clone(),
+                others: earlier.others.clone(),
+                traced: vec![0; count],
+            };
+            return Ok(Traced { rows: rows.unwrap_or_else(same), earlier: Some(earlier) });
+        }
+        let (scenery, columns) = side(tracer.scenery, &tracer.first);
+        let alone = (&part.self_block, &part.escapes);
+        let rows = placed(scenery, &tracer.samples, instance, alone, columns, self.monitor)?;
+        Ok(Traced { rows, earlier: None })
+    }
+
+    /// The blocks that an instance had in the earlier scene, if it was there and they are in the cache.
+    fn earlier(&self, instance: usize, tracer: &RayTracer) -> Option<Earlier> {
+        let (earlier, _) = tracer.earlier.as_ref()?;
+        let number = earlier.number_of(instance)?;
+        let keys =
+            [COUPLING, CORRECTED].map(|what| self.store.target(&earlier.keys.manifest(number, what).key()));
+        let load = |key: &Key| match self.store.load::<Rows>(key) {
+            Lookup::Found(rows) => Some(rows),
+            Lookup::Missing | Lookup::Damaged(_) => None,
+        };
+        let escapes = &self.placed.part_of(instance).part.escapes;
+        let is_corrected = may_be_blocked(&earlier.scenery, number, escapes);
+        let self_block = if is_corrected { Some(load(&keys[1])?) } else { None };
+        Some(Earlier { number, self_block, others: load(&keys[0])?, keys })
     }
 
     /// The self block of an instance with others between its surfaces, and its local equilibrium.
@@ -88,5 +213,14 @@ impl Coupler<'_> {
         let intruders = self.intruders(instance);
         let (computed, computed_by_row, time) = (0, vec![], Duration::ZERO);
         Ok(Corrected { self_block, local, intruders, origin, computed, computed_by_row, time })
+    }
+}
+
+/// The cache entry for a block. `earlier`: the block that it was made from, if there was one, and its key.
+fn made(block: Rows, earlier: Option<(Option<&Rows>, Key)>) -> NewValue<Rows> {
+    match earlier {
+        Some((Some(before), key)) if *before == block => NewValue::AsUnder(key, block),
+        Some(_) => NewValue::Revised(block, "rays that the edit concerns".into()),
+        None => NewValue::Whole(block),
     }
 }

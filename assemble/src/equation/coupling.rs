@@ -8,10 +8,8 @@ use crate::equation::stale_block::StaleBlock;
 use crate::placed_parts::PlacedParts;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::cached::{NewValue, Origin, cached, cached_or_revised, foreseen};
-use equilux_bake::oven::keys::{
-    BakedKey, CORRECTED, COUPLING, RelativePlacement, placed_manifest, placements_from, sky_manifest,
-};
-use equilux_bake::oven::{Baked, light_manifest, local_equilibrium};
+use equilux_bake::oven::placed_keys::{BakedKey, CORRECTED, COUPLING, PlacedKeys, RelativePlacement};
+use equilux_bake::oven::{Baked, Oven, light_manifest, local_equilibrium};
 use equilux_bake::rays::counts::may_be_blocked;
 use equilux_bake::treecode::{Audience, Request, Resolution, Timed, block};
 use equilux_formats::baked::{BakedLight, LocalEquilibrium};
@@ -34,8 +32,10 @@ pub struct Coupled {
     pub origin: Origin,
     /// Number of form factors computed for it.
     pub computed: usize,
-    /// Number of form factors computed for each receiver; empty if none were computed.
+    /// Number of form factors, or of rays, computed for each receiver; empty if none were computed.
     pub computed_by_row: Vec<u32>,
+    /// Number of rays traced for it.
+    pub rays: usize,
     /// F_kk with the intruders, if there are any.
     pub corrected: Option<Corrected>,
     /// Time spent on form factors of the coupling, summed over threads.
@@ -100,9 +100,19 @@ pub struct Coupler<'a> {
     pub resolution: Resolution,
     /// Progress, and requests to stop.
     pub monitor: &'a Monitor,
+    /// What keys are made of.
+    pub keys: PlacedKeys,
 }
 
-impl Coupler<'_> {
+impl<'a> Coupler<'a> {
+    /// Computes blocks of these placed parts, which `oven` baked.
+    pub fn new(oven: &Oven<'a>, placed: &'a PlacedParts) -> Self {
+        let &Oven { store, file, resolution, monitor } = oven;
+        let baked = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.unknowns().nodes() };
+        let parts = placed.parts.iter().map(baked).collect();
+        let keys = PlacedKeys::new(placed.instances.clone(), parts, resolution);
+        Self { placed, store, file, resolution, monitor, keys }
+    }
     /// Read in parallel all blocks, and all local equilibria with intruders, that the cache holds;
     /// [`Coupler::couple`] then requests them one after the other.
     pub fn read_ahead(&self) {
@@ -132,7 +142,7 @@ impl Coupler<'_> {
             Request::new(&self.placed.world, Audience::Instance(instance), &others, self.resolution);
         let MadeBlock { rows: coupling, origin, computed, computed_by_row, time, .. } =
             self.block((instance, COUPLING), request, Some(own), None)?;
-        Ok(Coupled { coupling, sky: None, origin, computed, computed_by_row, corrected, time })
+        Ok(Coupled { coupling, sky: None, origin, computed, computed_by_row, rays: 0, corrected, time })
     }
 
     /// Which blocks of an instance would be computed or reused, and why. Computes no form factors.
@@ -236,8 +246,7 @@ impl Coupler<'_> {
         let instances = &self.placed.instances;
         let part = instances[instance].part;
         let before = (0..instance).rev().filter(|&l| instances[l].part == part).take(MAX_TWIN_CANDIDATES);
-        let parts = self.part_senders();
-        let seen_by = |k: usize| placements_from(instances, &parts, k).map(|(_, seen)| seen);
+        let seen_by = |k: usize| self.keys.placements_from(k).map(|(_, seen)| seen);
         let here: HashSet<RelativePlacement> = seen_by(instance).collect();
         let common = |l: &usize| seen_by(*l).filter(|seen| here.contains(seen)).count();
         let twin = before.max_by_key(common)?;
@@ -253,25 +262,12 @@ impl Coupler<'_> {
 
     /// The cache name of a block of an instance.
     pub fn name(&self, instance: usize, what: &str) -> String {
-        let instances = &self.placed.instances;
-        let name = &instances[instance].name;
-        let twins = instances[..instance].iter().filter(|other| other.name == *name).count();
-        format!("{what} of {name} #{twins} in {}", self.file.display())
-    }
-
-    /// The inputs of the block between the sky and an instance.
-    pub fn sky_manifest(&self, instance: usize) -> Manifest {
-        sky_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance)
+        self.keys.name(self.file, instance, what)
     }
 
     /// The inputs of a block of an instance.
     pub fn manifest(&self, instance: usize, what: &str) -> Manifest {
-        placed_manifest(&self.placed.instances, &self.part_senders(), self.resolution, instance, what)
-    }
-
-    fn part_senders(&self) -> Vec<BakedKey> {
-        let known = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.unknowns().nodes() };
-        self.placed.parts.iter().map(known).collect()
+        self.keys.manifest(instance, what)
     }
 }
 

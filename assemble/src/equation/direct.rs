@@ -110,7 +110,7 @@ fn of_lamps(coupler: &Coupler, lights: &Lights) -> LampLight {
 /// the monitor was stopped.
 fn sky_block(coupler: &Coupler, world: &World, sky: usize, instance: usize) -> Result<(Rows, usize)> {
     let name = coupler.name(instance, "sky");
-    let manifest = coupler.sky_manifest(instance);
+    let manifest = coupler.keys.sky_manifest(instance);
     let mut computed = 0;
     let found = cached(coupler.store, &name, &manifest, coupler.monitor, || {
         coupler.monitor.begin(

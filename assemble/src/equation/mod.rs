@@ -5,6 +5,7 @@ mod counted;
 pub mod coupling;
 pub mod direct;
 mod direct_by_rays;
+mod earlier;
 pub mod environment;
 pub mod interpenetration;
 pub mod intruders;
@@ -66,7 +67,7 @@ impl Equation {
         oven.monitor.expect(expected_rows(&prepared, environment));
         let mut placed = bake_parts(oven, prepared, observer)?;
         observer.placed(&placed, &scene.cameras);
-        let coupler = coupler(oven, &placed);
+        let coupler = Coupler::new(oven, &placed);
         let lights = lights(&scene.lights, environment.light_units, environment.sky.as_ref(), &placed.world);
         let optics = whole_optics(&placed);
         let (coupled, direct) = match (&placed.scenery, oven.resolution.rays) {
@@ -74,8 +75,11 @@ impl Equation {
                 (couple(&coupler, observer, |k| coupler.couple(k))?, direct(&coupler, &lights)?)
             }
             (Some(scenery), Some(rays)) => {
-                let tracer = RayTracer::new(&placed, scenery, rays);
-                let coupled = couple(&coupler, observer, |k| coupler.couple_by_rays(k, &tracer))?;
+                let tracer = RayTracer::new(&coupler, scenery, rays);
+                let edit = tracer.edit();
+                let coupled =
+                    couple(&coupler, observer, |k| coupler.couple_by_rays(k, &tracer, edit.as_ref()))?;
+                earlier::remember(&coupler)?;
                 let by_rays = DirectByRays { coupler: &coupler, scenery, coupled: &coupled, optics: &optics };
                 let direct = by_rays.irradiance(&lights)?;
                 (coupled, direct)
@@ -169,11 +173,6 @@ fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Resul
         parts.push(baked);
     }
     Ok(PlacedParts::new(parts, prepared.instances))
-}
-
-fn coupler<'a>(oven: &'a Oven, placed: &'a PlacedParts) -> Coupler<'a> {
-    let &Oven { store, file, resolution, monitor } = oven;
-    Coupler { placed, store, file, resolution, monitor }
 }
 
 fn couple(

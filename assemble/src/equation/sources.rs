@@ -9,6 +9,7 @@ use crate::equation::coupling::{Coupled, Coupler};
 use crate::gather::glowing::{EmittingSurfaces, surfaces};
 use crate::placed_parts::PlacedParts;
 use equilux_bake::oven::cached::cached;
+use equilux_bake::oven::placed_keys::{SECONDARY_SOURCES, SOURCES};
 use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::rays::sources::{Effort, Source, form_factors};
 use equilux_formats::fingerprint::Content;
@@ -62,7 +63,7 @@ impl Sources {
             pairs.map(|(element, _)| element.area).sum()
         };
         let few = area(true) <= MOST_EMITTING * area(false);
-        Self::of(placed, emission, "light of sources", Effort::DIRECT).filter(|_| few)
+        Self::of(placed, emission, SOURCES, Effort::DIRECT).filter(|_| few)
     }
 
     /// The places that see much of the sources; none if there are none. `seen`: the sum of the form factors of sources of all
@@ -79,7 +80,7 @@ impl Sources {
         let least = brightest(seen, BRIGHT * mean, most);
         let classes = seen.iter().map(|&seen| Rgb([if seen > least { class(seen) } else { 0.0 }; 3]));
         let classes: Vec<Rgb> = classes.collect();
-        Self::of(placed, &classes, "light of secondary sources", Effort::REFLECTED)
+        Self::of(placed, &classes, SECONDARY_SOURCES, Effort::REFLECTED)
     }
 
     /// Sources where these values of all elements are not black.

@@ -3,7 +3,7 @@
 //! block up to date.
 
 use crate::placed_parts::PlacedParts;
-use equilux_bake::oven::keys::{RelativePlacement, placements_in};
+use equilux_bake::oven::placed_keys::{RelativePlacement, placements_in};
 use equilux_bake::treecode::revision::{Change, Revision};
 use equilux_formats::baked::BakedGeometry;
 use equilux_formats::fingerprint::{Key, Manifest};

@@ -5,7 +5,7 @@
 //! sky in it.
 
 use equilux_bake::elements::clusters::hierarchy;
-use equilux_bake::oven::keys::SKY_CELLS;
+use equilux_bake::oven::placed_keys::SKY_CELLS;
 use equilux_formats::{Corners, Element, Error, Face, FaceId, Geometry, MaterialId, Result, Rgb};
 use glam::DVec3;
 use image::codecs::hdr::HdrDecoder;

@@ -11,7 +11,7 @@ pub struct Advice {
     pub met: bool,
     /// Largest edge of elements, m.
     pub element_size: f64,
-    /// The tolerance of clusters.
+    /// The tolerance of form factors, from which the number of rays follows.
     pub tolerance: f64,
     /// The expected error at points, as in lightmaps and tables of points.
     pub estimated: f64,

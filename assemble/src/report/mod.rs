@@ -26,6 +26,8 @@ pub struct Report {
     pub scene: String,
     /// Number of elements in the scene.
     pub elements: usize,
+    /// Number of unknowns: elements, or patches of small ones.
+    pub unknowns: usize,
     /// The distinct parts.
     pub parts: Vec<PartReport>,
     /// Number of instances.
@@ -38,6 +40,8 @@ pub struct Report {
     pub form_factors_stored: usize,
     /// Number of form factors computed in this run; 0 if all came from the cache.
     pub form_factors_computed: usize,
+    /// Number of rays traced for rows of form factors in this run.
+    pub rays_traced: usize,
     /// Time spent.
     pub seconds: Seconds,
     /// The rounds of the exchange.

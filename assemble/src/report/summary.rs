@@ -60,12 +60,14 @@ pub fn summary(sources: &ReportSources) -> Report {
     Report {
         scene: String::new(),
         elements,
+        unknowns: (0..placed.instances.len()).map(|k| placed.unknowns_of(k)).sum(),
         parts: placed.parts.iter().map(part_report).collect(),
         instances: placed.instances.len(),
         element_size: String::new(),
         blocks: blocks(sources),
         form_factors_stored: systems.iter().map(|n| n.self_block.stored() + n.coupling.stored()).sum(),
         form_factors_computed: form_factors_computed(placed, coupled) + equation.direct.computed,
+        rays_traced: equation.rays().map_or(0, |rays| rays_traced(placed, coupled, rays)),
         seconds: seconds(placed, coupled, &outcome.times),
         rounds: rounds(sources),
         coarse_unknowns: outcome.coarse_unknowns,
@@ -195,6 +197,13 @@ fn form_factors_computed(placed: &PlacedParts, coupled: &[Coupled]) -> usize {
     let corrected = coupled.iter().filter_map(|own| own.corrected.as_ref()).map(|block| block.computed);
     let coupling = coupled.iter().map(|own| own.computed);
     own.chain(corrected).chain(coupling).sum()
+}
+
+/// Rays of baked parts, of so many a row, and of couplings.
+fn rays_traced(placed: &PlacedParts, coupled: &[Coupled], rays: u32) -> usize {
+    let baked = placed.parts.iter().filter(|baked| !baked.form_factors.is_reused());
+    let rows: usize = baked.map(|baked| baked.part.self_block.receivers()).sum();
+    rows * rays as usize + coupled.iter().map(|own| own.rays).sum::<usize>()
 }
 
 fn memory(systems: &[InstanceSystem], elements: usize) -> Bytes {

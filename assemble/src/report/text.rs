@@ -22,9 +22,9 @@ impl Report {
     pub fn text(&self) -> String {
         let mut lines = vec![
             format!(
-                "{}: {} elements ({}), {} in {}; {:.2} s",
+                "{}: {} ({}), {} in {}; {:.2} s",
                 self.scene,
-                self.elements,
+                self.size(),
                 self.element_size,
                 counted(self.parts.len(), "part"),
                 counted(self.instances, "place"),
@@ -47,11 +47,25 @@ impl Report {
         let reused = blocks.self_reused + blocks.coupling_reused;
         match (self.form_factors_computed, computed) {
             (0, 0) => "form factors: all from the cache".into(),
-            (form_factors, _) => format!(
-                "form factors: {} computed, {reused} of {} blocks from the cache",
-                thousands(form_factors),
-                reused + computed
-            ),
+            (form_factors, _) => {
+                let rays = match self.rays_traced {
+                    0 => String::new(),
+                    rays => format!(" from {} rays", thousands(rays)),
+                };
+                let (form_factors, all) = (thousands(form_factors), reused + computed);
+                format!(
+                    "form factors: {form_factors} computed{rays}, {reused} of {all} blocks from the cache"
+                )
+            }
+        }
+    }
+
+    /// The number of elements, and of the patches of which they are part.
+    fn size(&self) -> String {
+        if self.unknowns == self.elements {
+            format!("{} elements", self.elements)
+        } else {
+            format!("{} patches of {} elements", self.unknowns, self.elements)
         }
     }
 

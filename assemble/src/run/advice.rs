@@ -18,7 +18,7 @@ use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::prepare::{Preparation, Prepared, prepare};
-use equilux_bake::treecode::Resolution;
+use equilux_bake::treecode::{Resolution, rays_for_tolerance};
 use equilux_bake::world::World;
 use equilux_formats::{Element, Error, Instance, Result, Rgb, Scene, Store};
 use glam::DVec3;
@@ -41,8 +41,8 @@ const COARSEST_FACTOR: f64 = 4.0;
 /// minutes.
 const MAX_ELEMENTS: usize = 50_000;
 
-/// Tolerance as a share of the target error, and its maximum. The measured effect of clusters on light was half of
-/// the tolerance.
+/// Tolerance as a share of the target error, and its maximum. The number of rays follows from it, and the light at points
+/// is much less noisy than single rows.
 const TOLERANCE_SHARE: f64 = 0.3;
 /// See [`TOLERANCE_SHARE`].
 const MAX_TOLERANCE: f64 = 0.03;
@@ -74,7 +74,8 @@ pub fn advise(job: &Job, target: f64, monitor: &Monitor) -> Result<(Job, Advice)
     let tolerance = (TOLERANCE_SHARE * target).min(MAX_TOLERANCE);
     let with = |element_size| {
         let resolution = Resolution::for_tolerance(tolerance);
-        let preparation = Preparation { element_size, resolution, ..job.settings.preparation.clone() };
+        let rays = rays_for_tolerance(tolerance);
+        let preparation = Preparation { element_size, resolution, rays, ..job.settings.preparation.clone() };
         SolveSettings { preparation, warm: false, ..job.settings.clone() }
     };
     let prepared = prepare(&scene, &with(None).preparation)?;

@@ -2,6 +2,7 @@
 
 use super::run::Run;
 use super::setting::{Kind, Setting};
+use equilux_bake::treecode::rays_for_tolerance;
 
 /// The expected wall time of a run on `elements` elements, seconds: that of the most similar run, scaled by a power of the
 /// number of elements. Zero if no run is complete.
@@ -52,10 +53,11 @@ fn family(kind: Kind) -> u8 {
     }
 }
 
-/// The quantity that time is proportional to within a family: rays, or shots, of which equally many halve the unshot light
-/// each time.
+/// The quantity that time is proportional to within a family: rays of a row, and about as much again that does not depend on
+/// them; rays of a pair; or shots, of which equally many halve the unshot light each time.
 fn effort(kind: Kind) -> f64 {
     match kind {
+        Kind::Parts { tolerance } if tolerance > 0.0 => f64::from(256 + rays_for_tolerance(tolerance)),
         Kind::Rays(rays) => f64::from(rays),
         Kind::Progressive { unshot } => -unshot.ln(),
         _ => 1.0,
@@ -65,7 +67,7 @@ fn effort(kind: Kind) -> f64 {
 /// The power of the number of elements that time grows with.
 fn exponent(kind: Kind) -> f64 {
     match kind {
-        Kind::Parts { tolerance } if tolerance > 0.0 => 1.3,
+        Kind::Parts { tolerance } if tolerance > 0.0 => 1.0,
         Kind::Parts { .. } | Kind::Progressive { .. } => 1.7,
         Kind::Verified { .. } | Kind::Dense | Kind::Rays(_) => 2.0,
     }

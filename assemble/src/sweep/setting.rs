@@ -1,5 +1,6 @@
 //! One point of the grid: the method and its options.
 
+use equilux_bake::treecode::rays_for_tolerance;
 use serde::{Deserialize, Serialize};
 
 /// The method.
@@ -82,6 +83,9 @@ impl Setting {
     /// The setting in words.
     pub fn label(&self) -> String {
         let what = match self.kind {
+            Kind::Parts { tolerance } if tolerance > 0.0 && self.more.is_empty() => {
+                format!("tolerance {tolerance}, {} rays a row", rays_for_tolerance(tolerance))
+            }
             Kind::Parts { tolerance } => format!("tolerance {tolerance}"),
             Kind::Verified { tolerance } => format!("tolerance {tolerance}, round by round"),
             Kind::Dense => "classic, dense exact".to_owned(),

@@ -75,6 +75,19 @@ impl Preparation {
         };
         Resolution { rays: by_rays.then_some(self.rays), ..self.resolution }
     }
+
+    /// How rows are computed, and why.
+    pub fn rows_text(&self) -> String {
+        let why = match self.rows {
+            RowMethod::Auto if self.resolution == EXACT => "with --tolerance 0",
+            RowMethod::Auto => "unless --tolerance is 0",
+            RowMethod::Exact | RowMethod::Rays => "as --rows asks",
+        };
+        match self.resolution().rays {
+            Some(rays) => format!("{rays} rays each, {why}"),
+            None => format!("exact, {why}"),
+        }
+    }
 }
 
 /// How a scene is divided into parts.

@@ -28,6 +28,44 @@ pub struct SceneColumns<'a> {
     pub cell: &'a (dyn Fn(DVec3) -> u32 + Sync),
 }
 
+/// What a ray adds to a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Count {
+    /// One to an unknown of its own part.
+    Own(u32),
+    /// One to another column of the scene.
+    Other(u32),
+    /// It does not count: something covers its start.
+    Covered,
+    /// Nothing: it ends on black.
+    Nothing,
+}
+
+impl SceneColumns<'_> {
+    /// What a ray of an instance adds to its row where it lands.
+    #[inline(always)]
+    pub(super) fn count(
+        &self,
+        scenery: &Scenery,
+        instance: usize,
+        ray: &Ray,
+        landing: Option<Landing>,
+    ) -> Count {
+        match landing {
+            None => {
+                let direction = scenery.placement_of(instance).transform_vector3(ray.direction);
+                Count::Other(self.unknowns as u32 + (self.cell)(direction))
+            }
+            Some(Landing { end: End::Covered, .. }) => Count::Covered,
+            Some(Landing { end: End::Black, .. }) => Count::Nothing,
+            Some(Landing { end: End::Element(element), instance: met, .. }) => {
+                let unknown = scenery.surfaces_of(met).unknown_of(element);
+                if met == instance { Count::Own(unknown) } else { Count::Other(self.first[met] + unknown) }
+            }
+        }
+    }
+}
+
 impl std::fmt::Debug for SceneColumns<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} unknowns and {} cells", self.unknowns, self.cells)
@@ -47,8 +85,24 @@ pub struct PlacedRows {
 
 /// Whether another instance may stand between surfaces of this one, or hold the start of one of its rays.
 pub fn may_be_blocked(scenery: &Scenery, instance: usize, escapes: &Escapes) -> bool {
-    let near = scenery.boxes_near(instance, whole_reach(escapes));
-    escapes.reach.iter().any(|row| near.iter().any(|other| other.meets(&reach(row))))
+    let blockers = Blockers::new(scenery, instance, escapes);
+    (0..escapes.reach.len()).any(|unknown| blockers.may_block(escapes, unknown))
+}
+
+/// The boxes, in the coordinates of an instance, of others that may stand between its surfaces.
+pub(super) struct Blockers(Vec<Aabb>);
+
+impl Blockers {
+    pub(super) fn new(scenery: &Scenery, instance: usize, escapes: &Escapes) -> Self {
+        let whole = escapes.reach.iter().map(reach).fold(Aabb::EMPTY, Aabb::union);
+        Self(scenery.boxes_near(instance, whole))
+    }
+
+    /// Whether one of them may block or cover rays of this unknown.
+    fn may_block(&self, escapes: &Escapes, unknown: usize) -> bool {
+        let reach = reach(&escapes.reach[unknown]);
+        self.0.iter().any(|other| other.meets(&reach))
+    }
 }
 
 /// Traces what the rays of an instance meet in a scene beyond their own part. `baked`: its rows alone. Fails if the monitor
@@ -61,54 +115,71 @@ pub fn placed(
     columns: SceneColumns,
     monitor: &Monitor,
 ) -> Result<PlacedRows> {
-    let near = scenery.boxes_near(instance, whole_reach(escapes));
-    let may_be_blocked = |unknown: usize| {
-        let reach = reach(&escapes.reach[unknown]);
-        near.iter().any(|other| other.meets(&reach))
-    };
+    let blockers = Blockers::new(scenery, instance, escapes);
     let unknowns = scenery.surfaces_of(instance).unknowns();
     let rows = traced(unknowns, monitor, |unknown, scratch| {
-        let row = Placed { scenery, samples, instance, unknown, columns, scratch };
-        let covered = escapes.covered[unknown];
-        let escaped = escapes.of_row(unknown, samples.rays() as u32);
-        if may_be_blocked(unknown) {
-            pulp::Arch::new().dispatch(Whole(row))
-        } else if escaped.iter().all(|&bits| bits == 0) {
-            PlacedRow { covered, ..PlacedRow::default() }
-        } else {
-            pulp::Arch::new().dispatch(Escaped { row, escaped, covered })
-        }
+        placed_row(Placed { scenery, samples, instance, unknown, columns, scratch }, escapes, &blockers)
     })?;
-    let rays = |row: &PlacedRow| samples.rays() as u32 - u32::from(row.covered);
-    let own = |(unknown, row): (usize, &PlacedRow)| {
-        let counts = row.own.clone().map(|counts| CountedRow { counts, rays: rays(row) });
-        counts.unwrap_or_else(|| baked.counted_row(unknown))
-    };
     let is_corrected = rows.iter().any(|row| row.own.is_some());
-    let corrected = is_corrected.then(|| Rows::from_counts(unknowns, rows.iter().enumerate().map(own)));
-    let traced = rows.iter().map(|row| row.traced).collect();
-    let others = rows.into_iter().map(|row| CountedRow { rays: rays(&row), counts: row.others });
-    let others = Rows::from_counts(columns.unknowns + columns.cells, others);
-    Ok(PlacedRows { self_block: corrected, others, traced })
+    Ok(PlacedRows::of(rows, baked, (samples, columns), is_corrected))
 }
 
-/// The row of an unknown in a scene.
-struct Placed<'a> {
-    scenery: &'a Scenery,
-    samples: &'a Samples,
-    instance: usize,
-    unknown: usize,
-    columns: SceneColumns<'a>,
-    scratch: &'a mut Scratch,
+impl PlacedRows {
+    /// Blocks of these rows. `baked`: F_kk of the part alone; F_kk is kept if `is_corrected`.
+    pub(super) fn of(
+        rows: Vec<PlacedRow>,
+        baked: &Rows,
+        (samples, columns): (&Samples, SceneColumns),
+        is_corrected: bool,
+    ) -> Self {
+        let rays = |row: &PlacedRow| samples.rays() as u32 - u32::from(row.covered);
+        let own = |(unknown, row): (usize, &PlacedRow)| {
+            let counts = row.own.clone().map(|counts| CountedRow { counts, rays: rays(row) });
+            counts.unwrap_or_else(|| baked.counted_row(unknown))
+        };
+        let self_block =
+            is_corrected.then(|| Rows::from_counts(rows.len(), rows.iter().enumerate().map(own)));
+        let traced = rows.iter().map(|row| row.traced).collect();
+        let others = rows.into_iter().map(|row| CountedRow { rays: rays(&row), counts: row.others });
+        let others = Rows::from_counts(columns.unknowns + columns.cells, others);
+        Self { self_block, others, traced }
+    }
 }
 
+/// An unknown in a scene.
+pub(super) struct Placed<'a> {
+    pub scenery: &'a Scenery,
+    pub samples: &'a Samples,
+    pub instance: usize,
+    pub unknown: usize,
+    pub columns: SceneColumns<'a>,
+    pub scratch: &'a mut Scratch,
+}
+
+/// What the rays of an unknown end on in a scene.
 #[derive(Default)]
-struct PlacedRow {
-    /// Rays that end on the own part, if that was traced again.
-    own: Option<Vec<(u32, u16)>>,
-    others: Vec<(u32, u16)>,
-    covered: u16,
-    traced: u32,
+pub(super) struct PlacedRow {
+    /// On the own part, if that was traced again.
+    pub own: Option<Vec<(u32, u16)>>,
+    /// On other columns of the scene.
+    pub others: Vec<(u32, u16)>,
+    /// Rays that start in something.
+    pub covered: u16,
+    /// Rays that were traced.
+    pub traced: u32,
+}
+
+/// Traces the rays of an unknown that may meet another instance.
+pub(super) fn placed_row(row: Placed, escapes: &Escapes, blockers: &Blockers) -> PlacedRow {
+    let covered = escapes.covered[row.unknown];
+    let escaped = escapes.of_row(row.unknown, row.samples.rays() as u32);
+    if blockers.may_block(escapes, row.unknown) {
+        pulp::Arch::new().dispatch(Whole(row))
+    } else if escaped.iter().all(|&bits| bits == 0) {
+        PlacedRow { covered, ..PlacedRow::default() }
+    } else {
+        pulp::Arch::new().dispatch(Escaped { row, escaped, covered })
+    }
 }
 
 impl Placed<'_> {
@@ -116,21 +187,11 @@ impl Placed<'_> {
     #[inline(always)]
     fn land(&mut self, ray: &Ray, landing: Option<Landing>, covered: &mut u16) {
         let Scratch { own, others, .. } = &mut self.scratch;
-        match landing {
-            None => {
-                let direction = self.scenery.placement_of(self.instance).transform_vector3(ray.direction);
-                others.push(self.columns.unknowns as u32 + (self.columns.cell)(direction));
-            }
-            Some(Landing { end: End::Covered, .. }) => *covered += 1,
-            Some(Landing { end: End::Black, .. }) => {}
-            Some(Landing { end: End::Element(element), instance, .. }) => {
-                let unknown = self.scenery.surfaces_of(instance).unknown_of(element);
-                if instance == self.instance {
-                    own.push(unknown);
-                } else {
-                    others.push(self.columns.first[instance] + unknown);
-                }
-            }
+        match self.columns.count(self.scenery, self.instance, ray, landing) {
+            Count::Own(unknown) => own.push(unknown),
+            Count::Other(column) => others.push(column),
+            Count::Covered => *covered += 1,
+            Count::Nothing => {}
         }
     }
 
@@ -198,12 +259,8 @@ impl pulp::NullaryFnOnce for Escaped<'_> {
     }
 }
 
-/// The box around what the rays of all rows reach.
-fn whole_reach(escapes: &Escapes) -> Aabb {
-    escapes.reach.iter().map(reach).fold(Aabb::EMPTY, Aabb::union)
-}
-
-fn reach(&[a, b, c, d, e, f]: &[f32; 6]) -> Aabb {
+/// The box around what the rays of a row reach in their part.
+pub(super) fn reach(&[a, b, c, d, e, f]: &[f32; 6]) -> Aabb {
     Aabb { low: DVec3::new(a.into(), b.into(), c.into()), high: DVec3::new(d.into(), e.into(), f.into()) }
 }
 

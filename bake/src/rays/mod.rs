@@ -9,7 +9,7 @@
 //! wide_tree, plates → face_tree     the first face that a ray meets in a part, in its coordinates; lanes: eight numbers
 //! element_grid → surfaces           the unknown at a place on a face
 //! scenery                           the same among placed parts
-//! alone → counts                    what the rays of a row end on, in its part and in a scene; replicas: how uncertain that is
+//! alone → counts → recounts         what the rays of a row end on, in its part, in a scene, after an edit; replicas: how uncertain that is
 //! sources                           form factors to small, bright polygons, by shadow rays
 //! ```
 //!
@@ -23,6 +23,7 @@ pub mod hemisphere;
 mod index;
 mod lanes;
 mod plates;
+pub mod recounts;
 pub mod replicas;
 pub mod samples;
 pub mod scenery;

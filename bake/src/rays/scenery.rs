@@ -92,6 +92,11 @@ impl Scenery {
         &self.places[instance].surfaces
     }
 
+    /// The surfaces of an instance, to be placed elsewhere too.
+    pub fn shared_surfaces_of(&self, instance: usize) -> Arc<Surfaces> {
+        Arc::clone(&self.places[instance].surfaces)
+    }
+
     /// Number of unknowns of each instance.
     #[cfg(test)]
     pub fn unknowns(&self) -> Vec<usize> {
@@ -101,6 +106,11 @@ impl Scenery {
     /// The placement of an instance.
     pub fn placement_of(&self, instance: usize) -> DAffine3 {
         self.places[instance].placement
+    }
+
+    /// The box around everything.
+    pub fn bounds(&self) -> Aabb {
+        self.places.iter().map(|place| place.bounds).fold(Aabb::EMPTY, Aabb::union)
     }
 
     /// The box around an instance.
@@ -199,7 +209,7 @@ impl Near {
 }
 
 /// The box around a moved one.
-fn moved(bounds: Aabb, by: &DAffine3) -> Aabb {
+pub(super) fn moved(bounds: Aabb, by: &DAffine3) -> Aabb {
     Aabb::around(bounds.corners().into_iter().map(|corner| by.transform_point3(corner)))
 }
 

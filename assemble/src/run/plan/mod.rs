@@ -36,6 +36,8 @@ pub struct Plan {
     pub element_size: String,
     /// Accuracy and storage of form factors, as text.
     pub resolution: String,
+    /// How rows are computed, and why.
+    pub rows: String,
     /// The distinct parts.
     pub parts: Vec<PartFate>,
     /// The instances.
@@ -77,13 +79,14 @@ pub fn plan(job: &Job) -> Result<Plan> {
         elements: world.elements.len(),
         element_size: prepared.element_size.to_string(),
         resolution: resolution.to_string(),
+        rows: job.settings.preparation.rows_text(),
         parts: planned_parts(&prepared, &baked, |part| oven.foresee(part)),
         unseen: unseen.iter().map(|pair| pair.map(name)).collect(),
         exchange: exchange::planned(&job.settings, &prepared, &baked),
         left_out: left_out(&prepared, unseen.len(), scene.hidden_shells),
         classic_matrix_bytes: world.elements.len().pow(2) * size_of::<f64>(),
         instances: planned_instances(&prepared, baked, |placed| {
-            let coupler = Coupler { placed, store: &store, file: &job.scene, resolution, monitor: &stopped };
+            let coupler = Coupler::new(&oven, placed);
             (0..placed.instances.len()).map(|k| coupler.foresee(k)).collect()
         }),
         notes: [scene.notes, lights, damage_notes(&store)].concat(),

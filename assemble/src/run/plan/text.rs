@@ -19,6 +19,7 @@ impl Plan {
             counted(self.parts.len(), "part"),
             counted(self.instances.len(), "place")
         )];
+        lines.push(format!("rows: {}", self.rows));
         lines.extend(self.parts.iter().map(part_line));
         lines.extend(self.instances.iter().filter_map(corrected_line));
         lines.extend(self.coupling_lines());

@@ -1,0 +1,90 @@
+//! The scene as the last run on its file left it in the cache, whose blocks of counted rays an edit brings up to date.
+
+use crate::equation::coupling::Coupler;
+use equilux_bake::oven::placed_keys::PlacedKeys;
+use equilux_bake::rays::scenery::Scenery;
+use equilux_bake::rays::surfaces::Surfaces;
+use equilux_formats::Result;
+use equilux_formats::baked::BakedGeometry;
+use equilux_formats::fingerprint::Key;
+use equilux_formats::store::Lookup;
+use std::collections::{HashMap, VecDeque};
+use std::sync::Arc;
+
+/// An earlier version of a scene.
+#[derive(Debug)]
+pub struct EarlierScene {
+    /// The keys of its blocks.
+    pub keys: PlacedKeys,
+    /// Its surfaces.
+    pub scenery: Scenery,
+    /// For each of its instances the present one with the same part and placement; numbers rise.
+    pub stays: Vec<Option<usize>>,
+}
+
+/// Above this share of instances that came or went, rows from nothing cost no more.
+const MOST_CHANGED: f64 = 0.5;
+
+impl EarlierScene {
+    /// The scene of the last run, if it differs from the present one, not too much, and its parts are still known.
+    pub fn last(coupler: &Coupler, scenery: &Scenery) -> Option<Self> {
+        let now = coupler.keys.scene.as_ref()?;
+        let last = coupler.store.last_manifest(&name(coupler)).filter(|last| last.key() != now.key())?;
+        let keys = coupler.keys.earlier(&last)?;
+        let stays = stays(&keys, &coupler.keys);
+        let kept = stays.iter().flatten().count();
+        let changed = (keys.instances.len() + coupler.keys.instances.len() - 2 * kept) as f64;
+        if changed > MOST_CHANGED * coupler.keys.instances.len() as f64 {
+            return None;
+        }
+        let mut known: HashMap<Key, Arc<Surfaces>> = HashMap::new();
+        for (number, _) in coupler.keys.instances.iter().enumerate() {
+            known
+                .entry(coupler.keys.part_of(number).key)
+                .or_insert_with(|| scenery.shared_surfaces_of(number));
+        }
+        for part in &keys.parts {
+            if !known.contains_key(&part.key) {
+                let Lookup::Found(baked) = coupler.store.load::<BakedGeometry>(&part.key) else {
+                    return None;
+                };
+                known.insert(part.key, Arc::new(Surfaces::new(&baked.geometry)));
+            }
+        }
+        let placed = keys.instances.iter().enumerate();
+        let placed = placed.map(|(k, instance)| (known[&keys.part_of(k).key].clone(), instance.placement));
+        Some(Self { scenery: Scenery::new(placed), keys, stays })
+    }
+
+    /// The number that a present instance had.
+    pub fn number_of(&self, instance: usize) -> Option<usize> {
+        self.stays.iter().position(|&stays| stays == Some(instance))
+    }
+}
+
+/// Remembers the present scene for the next run.
+pub fn remember(coupler: &Coupler) -> Result<()> {
+    coupler.keys.scene.as_ref().map_or(Ok(()), |scene| coupler.store.remember(&name(coupler), scene))
+}
+
+fn name(coupler: &Coupler) -> String {
+    format!("placed parts of {}", coupler.file.display())
+}
+
+/// For each earlier instance the present one with the same part and placement.
+fn stays(before: &PlacedKeys, now: &PlacedKeys) -> Vec<Option<usize>> {
+    let identity = |keys: &PlacedKeys, k: usize| {
+        let placement = keys.instances[k].placement.to_cols_array();
+        (keys.part_of(k).key, placement.map(|number| (number + 0.0).to_bits()))
+    };
+    let mut free: HashMap<_, VecDeque<usize>> = HashMap::new();
+    (0..now.instances.len()).for_each(|k| free.entry(identity(now, k)).or_default().push_back(k));
+    let mut least = 0;
+    let mut find = |k: usize| {
+        // Ties between hits are broken by number: instances that changed places are not the same.
+        let found = free.get_mut(&identity(before, k))?.pop_front().filter(|&found| found >= least)?;
+        least = found + 1;
+        Some(found)
+    };
+    (0..before.instances.len()).map(&mut find).collect()
+}
