@@ -5,7 +5,7 @@ use equilux_tests::workshop::Workshop;
 use serde_json::Value;
 
 /// Keys that other programs rely on, as JSON pointers.
-const KEYS: [&str; 57] = [
+const KEYS: [&str; 58] = [
     "/scene",
     "/elements",
     "/parts/0/name",
