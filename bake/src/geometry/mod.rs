@@ -2,6 +2,7 @@
 
 pub mod aabb;
 pub mod box_tree;
+mod crossings;
 pub mod disjoint_sets;
 pub mod outline;
 pub mod planes;

@@ -28,7 +28,7 @@ pub mod replicas;
 pub mod samples;
 pub mod scenery;
 #[cfg(test)]
-mod shapes;
+pub(crate) mod shapes;
 mod sobol;
 pub mod sources;
 pub mod surfaces;
