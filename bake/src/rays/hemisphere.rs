@@ -6,15 +6,15 @@ use super::samples::{Sample, Samples};
 use super::sobol::hash;
 use super::wide_tree::Ray;
 use crate::geometry::aabb::Aabb;
-use equilux_formats::Element;
+use equilux_formats::{Element, Face};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// How far from the edges of an element its rays start, as a share of it: a ray from an edge may start inside a neighbour.
 const INSET: f64 = 1e-4;
 
-/// How far in front of an element its rays start, in its size: far less than [`INSET`], so that a ray that starts beside a
-/// neighbour starts in front of it too; far more than f64 rounds.
+/// How far in front of an element and of its face's plane its rays start, in its size: far less than [`INSET`], so that a ray
+/// that starts beside a neighbour starts in front of it too; far more than f64 rounds.
 const IN_FRONT: f64 = 1e-6;
 
 /// The polygons of an unknown, as triangles and parallelograms to start from.
@@ -33,12 +33,33 @@ struct Piece {
     edges: [DVec3; 2],
     is_parallelogram: bool,
     frame: [DVec3; 3],
+    /// How far in front of it rays start.
+    in_front: f64,
 }
 
 impl Emitters {
-    /// The area of these elements.
+    /// The area of these elements. Their faces may be as far off their planes as their own corners.
     pub fn new<'a>(elements: impl IntoIterator<Item = &'a Element>) -> Self {
-        let pieces: Vec<Piece> = elements.into_iter().flat_map(pieces).collect();
+        Self::beyond(elements.into_iter().map(|element| (element, element.corners.as_slice())))
+    }
+
+    /// The area of these elements, each on a face, whose plane goes through its first corner.
+    pub fn on<'a>(elements: impl IntoIterator<Item = (&'a Element, &'a Face)>) -> Self {
+        Self::beyond(elements.into_iter().map(|(element, face)| (element, &face.corners[..1])))
+    }
+
+    /// The area of these elements. Rays of each start in front of the planes through some points that are parallel to it.
+    /// Corners that are stored in f32 lie off the plane of their face; for small elements, by more than [`IN_FRONT`] of their
+    /// size. Rays that start behind that plane would end on their own face.
+    fn beyond<'a>(elements: impl IntoIterator<Item = (&'a Element, &'a [DVec3])>) -> Self {
+        let raised = |(element, points): (&'a Element, &'a [DVec3])| {
+            let height = |p: &DVec3| element.normal.dot(*p - element.corners.as_slice()[0]);
+            let top = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
+            let bottom = element.corners.as_slice().iter().map(height).fold(f64::INFINITY, f64::min);
+            let raised = (top - bottom).max(0.0);
+            pieces(element).into_iter().map(move |piece| Piece { in_front: piece.in_front + raised, ..piece })
+        };
+        let pieces: Vec<Piece> = elements.into_iter().flat_map(raised).collect();
         let mut sum = 0.0;
         let areas = pieces.iter().map(Piece::area);
         let mut until: Vec<f64> = areas
@@ -129,7 +150,8 @@ fn turn(seed: u32) -> (f64, f64) {
 
 impl Piece {
     fn new(corner: DVec3, edges: [DVec3; 2], is_parallelogram: bool, normal: DVec3) -> Self {
-        Self { corner, edges, is_parallelogram, frame: frame(normal) }
+        let in_front = IN_FRONT * (edges[0].length() + edges[1].length());
+        Self { corner, edges, is_parallelogram, frame: frame(normal), in_front }
     }
 
     fn corners(&self) -> [DVec3; 4] {
@@ -155,7 +177,7 @@ impl Piece {
             let third = |x: f64| INSET + x * (1.0 - 3.0 * INSET);
             (third(1.0 - root), third(root * v))
         };
-        self.corner + a * u + b * v + self.frame[2] * (IN_FRONT * (a.length() + b.length()))
+        self.corner + a * u + b * v + self.frame[2] * self.in_front
     }
 }
 
@@ -299,6 +321,26 @@ mod tests {
             for axis in [x, y] {
                 prop_assert!(mean(along(axis)).abs() <= spread(0.5));
                 prop_assert!((mean(along(axis).map(|c| c * c)) - 0.25).abs() <= spread(0.25));
+            }
+        }
+
+        /// Quads of a few centimetres, as glTF stores them at a few metres from the origin: up to 1e-7 m off any plane.
+        #[test]
+        fn rays_start_in_front_of_their_face(
+            (at, turn, size) in (crate::rays::shapes::point(), rotation(), 0.002..0.1_f64),
+            number in 0u32..,
+        ) {
+            let corner = |x: f64, y: f64| (at * 4.0 + turn * DVec3::new(x, y, 0.0) * size).as_vec3().as_dvec3();
+            let corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
+            let face = Face::new(corners.to_vec());
+            let [a, b, c, d] = corners;
+            for side in [[a, b, c, d], [d, c, b, a]] {
+                let element = Element::new(Corners::quad(side), MaterialId(0), FaceId(0));
+                let mut rays = vec![];
+                Emitters::on([(&element, &face)]).rays(&SAMPLES, number, &mut rays);
+                let height = |ray: &Ray| (ray.origin - face.corners[0]).dot(element.normal);
+                let lowest = rays.iter().map(height).fold(f64::INFINITY, f64::min);
+                prop_assert!(lowest > 0.0, "{lowest} m in front of the face");
             }
         }
     }

@@ -6,7 +6,7 @@ use super::hemisphere::Emitters;
 use super::wide_tree::Ray;
 use crate::geometry::polygon::area;
 use crate::geometry::solids::solids;
-use equilux_formats::{Element, Geometry};
+use equilux_formats::{Element, Face, Geometry};
 
 /// What a ray ends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,7 +59,7 @@ impl Surfaces {
             tree: FaceTree::new(faces),
             sides: sides.collect(),
             of_solid,
-            emitters: emitters(elements, &unknown_of),
+            emitters: emitters(geometry, &unknown_of),
             elements: elements.clone(),
             unknown_of,
         }
@@ -96,9 +96,11 @@ impl Surfaces {
 }
 
 /// The area of each unknown.
-fn emitters(elements: &[Element], unknown_of: &[u32]) -> Vec<Emitters> {
+fn emitters(Geometry { elements, faces, .. }: &Geometry, unknown_of: &[u32]) -> Vec<Emitters> {
     let count = unknown_of.iter().max().map_or(0, |&last| last as usize + 1);
-    let mut of: Vec<Vec<&Element>> = vec![vec![]; count];
-    unknown_of.iter().zip(elements).for_each(|(&unknown, element)| of[unknown as usize].push(element));
-    of.into_iter().map(Emitters::new).collect()
+    let mut of: Vec<Vec<(&Element, &Face)>> = vec![vec![]; count];
+    for (&unknown, element) in unknown_of.iter().zip(elements) {
+        of[unknown as usize].push((element, &faces[element.face.index()]));
+    }
+    of.into_iter().map(Emitters::on).collect()
 }
