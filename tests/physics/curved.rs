@@ -72,7 +72,7 @@ proptest! {
     ) {
         // The torus is a mesh; the ball, a closed convex solid, stands for all that is none.
         let world = world(0.5, &[(torus((0.4, 0.15), 12, 6), ring), (sphere(0.2, 1), ball)]);
-        prop_assert!((0..world.occluders.all.len() as u32).any(|o| world.occluders.mesh(o).is_some()));
+        prop_assert!((0..world.occluders().all.len() as u32).any(|o| world.occluders().mesh(o).is_some()));
         let exact = rows(&world, EXACT);
         // Both are exact, and differ by the rounding of some hundred pieces, 1e-16 each, a few of them ill-conditioned.
         let entry = worst_entry(&world, &exact, 24);

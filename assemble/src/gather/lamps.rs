@@ -119,7 +119,7 @@ impl Lamp {
     ) {
         let mut shaft = Shaft::between(Aabb::around([self.position]), Aabb::around(polygon));
         shaft.bound(plane.point, -plane.normal);
-        world.occluders.any(
+        world.occluders().any(
             |bounds| shaft.misses_box(bounds),
             |occluder| {
                 let others = occluder.faces.iter().filter(|&&face| !world.coplanar(own, FaceId(face)));

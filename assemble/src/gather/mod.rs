@@ -153,7 +153,7 @@ impl Gather {
         let slack = COPLANAR_TOLERANCE * bounds.diagonal();
         let before = |corner: &DVec3| normal.dot(*corner - point) > slack;
         let apart = |other: &Aabb| !other.meets(&bounds);
-        self.world.occluders.any(apart, |occluder| occluder.corners.iter().any(before))
+        self.world.occluders().any(apart, |occluder| occluder.corners.iter().any(before))
     }
 
     fn from(&self, points: &[Element], senders: &[usize], sent: &[Rgb], resolution: Resolution) -> Vec<Rgb> {

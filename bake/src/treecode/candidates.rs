@@ -47,7 +47,7 @@ const MAX_SINGLE_FACES: usize = 8;
 impl<'a> Candidates<'a> {
     /// The list of all occluders.
     pub fn all(world: &'a World) -> (Self, Range<usize>) {
-        let root = world.occluders.tree.root().map(|root| Entry::Box(root as u32));
+        let root = world.occluders().tree.root().map(|root| Entry::Box(root as u32));
         let entries: Vec<Entry> = root.into_iter().collect();
         let list = 0..entries.len();
         (Self { world, entries, open: vec![] }, list)
@@ -105,7 +105,7 @@ impl<'a> Candidates<'a> {
         while let Some(entry) = self.open.pop() {
             match entry {
                 Entry::Box(index) => {
-                    let node = self.world.occluders.tree.node(index as usize);
+                    let node = self.world.occluders().tree.node(index as usize);
                     if between.shaft.misses_box(&node.bounds) {
                         continue;
                     }
@@ -113,7 +113,7 @@ impl<'a> Candidates<'a> {
                         self.entries.push(entry);
                         continue;
                     }
-                    match self.world.occluders.tree.inside(index as usize) {
+                    match self.world.occluders().tree.inside(index as usize) {
                         Inside::Boxes(inner) => self.open.extend(inner.map(|i| Entry::Box(i as u32))),
                         Inside::Things(things) => {
                             self.open.extend(things.iter().map(|&t| Entry::Occluder(t)))
@@ -124,7 +124,7 @@ impl<'a> Candidates<'a> {
                     if between.is_aside(index) {
                         continue;
                     }
-                    if let Shape::Mesh(together) = &self.world.occluders.all[index as usize].shape {
+                    if let Shape::Mesh(together) = &self.world.occluders().all[index as usize].shape {
                         match between.faces_of(together) {
                             Some(few) => self.open.extend(few.into_iter().map(Entry::Occluder)),
                             None => self.entries.push(entry),
@@ -179,7 +179,7 @@ impl<'a> Between<'a> {
             viewers,
             shaft,
             sender_face: sender.side.map(|side| side.face),
-            sender_occluder: sender.side.map(|side| world.occluders.of_face[side.face.index()]),
+            sender_occluder: sender.side.map(|side| world.occluders().of_face[side.face.index()]),
             axis: [middle(&viewers.hull), middle(corners)],
             narrowest: if near == 0.0 { 0.0 } else { near * far / (near + far) },
             slack: ON_FACE * far,
@@ -189,7 +189,7 @@ impl<'a> Between<'a> {
 
     #[inline(always)]
     fn is_aside(&self, index: u32) -> bool {
-        let occluder = &self.world.occluders.all[index as usize];
+        let occluder = &self.world.occluders().all[index as usize];
         let flat = self.viewers.flat.as_ref();
         match occluder.shape {
             // A convex solid hides nothing from its own surface, and nothing of it.
@@ -239,7 +239,7 @@ impl<'a> Between<'a> {
 
     /// Whether some face of the occluder alone stands between every viewer and all of the sender.
     fn is_blocked_by(&self, index: u32) -> bool {
-        let occluder = &self.world.occluders.all[index as usize];
+        let occluder = &self.world.occluders().all[index as usize];
         if occluder.diameter < self.narrowest {
             return false;
         }

@@ -74,7 +74,7 @@ impl<'a> Evaluator<'a> {
         Self {
             world,
             whole: Pyramids::default(),
-            known: vec![None; world.occluders.all.len()],
+            known: vec![None; world.occluders().all.len()],
             pieces: Pyramids::default(),
             meshes: SeenMeshes::new(world),
             before: vec![],
@@ -143,7 +143,7 @@ impl<'a> Evaluator<'a> {
             let Entry::Occluder(index) = *entry else {
                 unreachable!("lists of senders that are evaluated are opened")
             };
-            let occluder = &self.world.occluders.all[index as usize];
+            let occluder = &self.world.occluders().all[index as usize];
             let slack = IN_PLANE * (occluder.diameter + (occluder.corners[0] - corner).length());
             let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
             for &p in &occluder.corners {

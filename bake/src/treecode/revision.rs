@@ -49,8 +49,7 @@ impl Change {
 
     /// Adds the occluders of an instance that appeared or disappeared.
     pub fn add(&mut self, geometry: &Geometry, placement: DAffine3) {
-        let alone = World::new([(geometry, placement)]);
-        let occluders = alone.occluders.all.into_iter();
+        let occluders = World::new([(geometry, placement)]).into_occluders().all.into_iter();
         self.occluders.extend(occluders.map(|o| ChangedOccluder { bounds: o.bounds, corners: o.corners }));
     }
 

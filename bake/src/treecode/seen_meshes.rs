@@ -63,7 +63,7 @@ impl<'a> SeenMeshes<'a> {
 
     /// Computes the meshes in front of the sender for one receiver.
     fn make(&mut self, receivers: &Receivers, receiver: usize) {
-        self.known.resize_with(self.world.occluders.all.len(), Vec::new);
+        self.known.resize_with(self.world.occluders().all.len(), Vec::new);
         for &occluder in &self.before {
             let by_receiver = &mut self.known[occluder as usize];
             by_receiver.resize_with(receivers.count(), || None);
@@ -74,7 +74,7 @@ impl<'a> SeenMeshes<'a> {
 }
 
 fn seen<'a>(world: &'a World, occluder: u32, receivers: &Receivers, receiver: usize) -> SeenMesh<'a> {
-    let mesh = world.occluders.mesh(occluder).expect("only meshes are added");
+    let mesh = world.occluders().mesh(occluder).expect("only meshes are added");
     let own = receivers.viewers.flat.as_ref().expect("receivers lie on one face").face;
     let point = receivers.points.points()[receiver];
     mesh.seen_from(point, receivers.points.normal(), |face| world.coplanar(own, FaceId(face)))

@@ -41,7 +41,7 @@ impl Viewers {
         let flat = elements.iter().all(same_side).then(|| Flat {
             normal: first.normal,
             face: first.face,
-            occluder: world.occluders.of_face[first.face.index()],
+            occluder: world.occluders().of_face[first.face.index()],
         });
         let hull = match flat {
             Some(_) if elements.len() > 4 => convex_hull(points(), first.normal),

@@ -11,6 +11,7 @@ use equilux_formats::{ClusterTree, Element, Face, FaceId, Geometry, MaterialId};
 use glam::{DAffine3, DVec3};
 use occluders::Occluders;
 use std::ops::Range;
+use std::sync::OnceLock;
 
 /// Placed geometry and its occluders.
 #[derive(Debug)]
@@ -22,8 +23,8 @@ pub struct World {
     planes: FacePlanes,
     /// All elements and clusters, instance after instance, numbered within an instance as its tree numbers them.
     pub nodes: Vec<Sender>,
-    /// The occluders, in a spatial index.
-    pub occluders: Occluders,
+    /// The occluders, in a spatial index, once they are asked for: rays need none.
+    occluders: OnceLock<Occluders>,
     instances: Vec<InstanceRanges>,
     /// The cluster around every node; its own number for a root.
     parents: Vec<u32>,
@@ -32,7 +33,8 @@ pub struct World {
 /// The planes that faces lie in, by number, and the instances they belong to.
 #[derive(Debug)]
 struct FacePlanes {
-    in_scene: Vec<u32>,
+    /// Once they are asked for.
+    in_scene: OnceLock<Vec<u32>>,
     in_part: Vec<u32>,
     instance: Vec<u32>,
 }
@@ -95,14 +97,30 @@ impl World {
                 root: geometry.clusters.root().map(|root| first_node + root),
             });
         }
-        let planes = FacePlanes { in_scene: planes::group(&faces), in_part, instance };
-        let occluders = Occluders::new(&faces, &lit_behind(&elements, &faces));
+        let planes = FacePlanes { in_scene: OnceLock::new(), in_part, instance };
         let parents = parents(&nodes);
-        Self { elements, faces, planes, nodes, occluders, instances, parents }
+        Self { elements, faces, planes, nodes, occluders: OnceLock::new(), instances, parents }
+    }
+
+    /// The occluders, in a spatial index.
+    pub fn occluders(&self) -> &Occluders {
+        self.occluders.get_or_init(|| Occluders::new(&self.faces, &lit_behind(&self.elements, &self.faces)))
+    }
+
+    /// The occluders alone.
+    pub fn into_occluders(self) -> Occluders {
+        self.occluders();
+        self.occluders.into_inner().expect("just found")
+    }
+
+    fn planes_in_scene(&self) -> &[u32] {
+        self.planes.in_scene.get_or_init(|| planes::group(&self.faces))
     }
 
     /// Adds senders that do not occlude: elements that lie in faces of the world. Returns their instance.
     pub fn add_senders(&mut self, elements: &[Element], clusters: &ClusterTree) -> usize {
+        // Of what was there before.
+        self.occluders();
         let (first_element, first_node) = (self.elements.len(), self.nodes.len());
         self.elements.extend_from_slice(elements);
         add_senders(clusters, elements, &mut self.nodes);
@@ -117,15 +135,19 @@ impl World {
 
     /// Adds geometry behind everything else that does not occlude, such as a sky. Returns its instance.
     pub fn add_far(&mut self, geometry: &Geometry) -> usize {
+        self.occluders();
+        self.planes_in_scene();
         let first = self.faces.len() as u32;
         self.faces.extend_from_slice(&geometry.faces);
         // Each face has a plane of its own: nothing lies in it.
         let FacePlanes { in_scene, in_part, instance } = &mut self.planes;
+        let in_scene = in_scene.get_mut().expect("just found");
         let past = in_scene.iter().max().map_or(0, |last| last + 1);
         in_scene.extend((0..).take(geometry.faces.len()).map(|n| past + n));
         in_part.extend((0..).take(geometry.faces.len()));
         instance.resize(self.faces.len(), self.instances.len() as u32);
-        self.occluders.of_face.resize(self.faces.len(), u32::MAX);
+        let occluders = self.occluders.get_mut().expect("just found");
+        occluders.of_face.resize(self.faces.len(), u32::MAX);
         let in_world = |e: &Element| Element { face: FaceId(e.face.0 + first), ..*e };
         let elements: Vec<Element> = geometry.elements.iter().map(in_world).collect();
         self.add_senders(&elements, &geometry.clusters)
@@ -134,9 +156,13 @@ impl World {
     /// Whether two faces lie in one plane, so that neither lights nor hides the other. Within an instance this is
     /// decided in the part's own coordinates, so that it is the same in every scene.
     pub fn coplanar(&self, a: FaceId, b: FaceId) -> bool {
-        let FacePlanes { in_scene, in_part, instance } = &self.planes;
+        let FacePlanes { in_part, instance, .. } = &self.planes;
         let (a, b) = (a.index(), b.index());
-        if instance[a] == instance[b] { in_part[a] == in_part[b] } else { in_scene[a] == in_scene[b] }
+        if instance[a] == instance[b] {
+            in_part[a] == in_part[b]
+        } else {
+            self.planes_in_scene()[a] == self.planes_in_scene()[b]
+        }
     }
 
     /// The number of the plane that a face lies in, among those of its instance.
