@@ -9,8 +9,8 @@ use equilux_assemble::run::run;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::monitor::Monitor;
-use equilux_bake::oven::prepare::Division;
-use equilux_bake::treecode::Resolution;
+use equilux_bake::oven::prepare::{Division, RowMethod};
+use equilux_bake::treecode::{Resolution, rays_for_tolerance};
 use equilux_formats::Rgb;
 use equilux_tests::levels::furnished;
 use equilux_tests::model::{Model, Node};
@@ -27,13 +27,15 @@ fn main() {
     let mut job = workshop.job(Division::Authored);
     job.settings.preparation.element_size = Some(ElementSize::Metres(size));
     job.settings.preparation.resolution = Resolution::for_tolerance(tolerance);
+    job.settings.preparation.rows = RowMethod::Auto;
+    job.settings.preparation.rays = rays_for_tolerance(tolerance);
     job.settings.goal.error = 1e-6;
     job.outputs.exact_rows = ExactRows::About(0);
     job.outputs.pictures = Pictures::None;
     job.settings.warm = true;
     println!(
-        "{:<34}{:>10}{:>12}{:>10}{:>8}{:>9}{:>9}",
-        "", "elements", "computed", "of all", "rounds", "seconds", "faster"
+        "{:<34}{:>10}{:>12}{:>14}{:>10}{:>8}{:>9}{:>9}",
+        "", "elements", "rays", "form factors", "of all", "rounds", "seconds", "faster"
     );
     let mut level = level(rooms);
     let measured =
@@ -66,8 +68,9 @@ fn assemble_and_print(what: &str, level: &[Node], job: &Job, first: Option<f64>)
     let stored: usize = report.parts.iter().map(|part| part.stored).sum();
     let all = report.form_factors_stored.max(stored);
     println!(
-        "{what:<34}{:>10}{:>12}{:>10}{:>8}{seconds:>9.2}{:>9}",
+        "{what:<34}{:>10}{:>12}{:>14}{:>10}{:>8}{seconds:>9.2}{:>9}",
         report.elements,
+        report.rays_traced,
         report.form_factors_computed,
         format!("{:.2} %", 100.0 * report.form_factors_computed as f64 / all as f64),
         report.rounds.len(),
