@@ -79,7 +79,10 @@ fn object(arguments: &[&str], program: &str) -> Value {
 
 #[test]
 fn assemble_prints_one_object_with_every_key() {
-    let report = object(&["scene.glb", "--element-size", "1", "--tolerance", "0.01", "--json"], "assemble");
+    let arguments = ["scene.glb", "--element-size", "1", "--tolerance", "0.01", "--json"];
+    let noise = object(&arguments, "assemble")["error"]["noise"].clone();
+    assert!(noise["rms_rel"].as_f64() > Some(0.0) && noise["rays"] == 256, "rows by rays: {noise}");
+    let report = object(&[&arguments[..], &["--rows", "exact"]].concat(), "assemble");
     let missing: Vec<_> = KEYS.iter().filter(|key| report.pointer(key).is_none()).collect();
     assert!(missing.is_empty(), "missing {missing:?} in {report}");
     assert_eq!(report["scene"], "scene");

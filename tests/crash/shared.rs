@@ -54,7 +54,7 @@ fn turns(workshop: &Workshop) -> Vec<Turn> {
         element_size: Some(ElementSize::Metres(1.0)),
         division: Division::Authored,
         resolution: Resolution::for_tolerance(0.01),
-        rows: RowMethod::Exact,
+        rows: RowMethod::Auto,
         rays: 256,
         local_solver: None,
     };

@@ -159,7 +159,8 @@ impl Coupler<'_> {
         make: impl FnOnce() -> Result<NewValue<Rows>>,
     ) -> Result<(Rows, Origin)> {
         let (name, manifest) = (self.name(instance, what), self.manifest(instance, what));
-        cached_or_revised(self.store, &name, &manifest, self.monitor, make)
+        let (rows, origin) = cached_or_revised(self.store, &name, &manifest, self.monitor, make)?;
+        Ok((rows, self.explained(origin)))
     }
 
     /// The rows of an instance, brought up to date or from nothing.

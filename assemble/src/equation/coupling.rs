@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 use std::ops::Range;
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::Duration;
 
 /// The blocks of an instance.
@@ -102,6 +103,8 @@ pub struct Coupler<'a> {
     pub monitor: &'a Monitor,
     /// What keys are made of.
     pub keys: PlacedKeys,
+    /// What changed in the scene since the last run, if it is asked for.
+    change: OnceLock<Option<String>>,
 }
 
 impl<'a> Coupler<'a> {
@@ -111,7 +114,7 @@ impl<'a> Coupler<'a> {
         let baked = |part: &Baked| BakedKey { key: part.key, senders: part.part.geometry.unknowns().nodes() };
         let parts = placed.parts.iter().map(baked).collect();
         let keys = PlacedKeys::new(placed.instances.clone(), parts, resolution);
-        Self { placed, store, file, resolution, monitor, keys }
+        Self { placed, store, file, resolution, monitor, keys, change: OnceLock::new() }
     }
     /// Read in parallel all blocks, and all local equilibria with intruders, that the cache holds;
     /// [`Coupler::couple`] then requests them one after the other.
@@ -149,12 +152,12 @@ impl<'a> Coupler<'a> {
     pub fn foresee(&self, instance: usize) -> ForeseenBlocks {
         let origin = |what: &str| {
             let manifest = self.manifest(instance, what);
-            foreseen::<Rows>(self.store, &self.name(instance, what), &manifest)
+            self.explained(foreseen::<Rows>(self.store, &self.name(instance, what), &manifest))
         };
         let intruders = self.intruders(instance);
         let escapes = &self.placed.part_of(instance).part.escapes;
         let is_corrected = match &self.placed.scenery {
-            Some(scenery) => may_be_blocked(scenery, instance, escapes),
+            Some(scenery) => !intruders.is_empty() && may_be_blocked(scenery, instance, escapes),
             None => !intruders.is_empty(),
         };
         let corrected = is_corrected.then(|| origin(CORRECTED));
@@ -258,6 +261,26 @@ impl<'a> Coupler<'a> {
     fn last_key(&self, instance: usize, what: &str) -> Option<Key> {
         let last = self.store.last_manifest(&self.name(instance, what))?;
         Some(self.store.target(&last.key()))
+    }
+
+    /// The origin of a block; where the scene changed, what changed in it since the last run.
+    pub fn explained(&self, origin: Origin) -> Origin {
+        let Some(scene) = &self.keys.scene else { return origin };
+        let find = || scene.difference(&self.store.last_manifest(&self.scene_name())?);
+        let explain = |reason: String| match self.change.get_or_init(find) {
+            Some(change) => reason.replace("the scene changed", change),
+            None => reason,
+        };
+        match origin {
+            Origin::Reused => Origin::Reused,
+            Origin::Unchanged(reason) => Origin::Unchanged(explain(reason)),
+            Origin::Computed(reason) => Origin::Computed(explain(reason)),
+        }
+    }
+
+    /// The name under which the placed parts of the last run are remembered.
+    pub fn scene_name(&self) -> String {
+        format!("placed parts of {}", self.file.display())
     }
 
     /// The cache name of a block of an instance.

@@ -8,6 +8,7 @@ use equilux_formats::Result;
 use equilux_formats::baked::BakedGeometry;
 use equilux_formats::fingerprint::Key;
 use equilux_formats::store::Lookup;
+use std::collections::hash_map::Entry;
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
@@ -29,7 +30,8 @@ impl EarlierScene {
     /// The scene of the last run, if it differs from the present one, not too much, and its parts are still known.
     pub fn last(coupler: &Coupler, scenery: &Scenery) -> Option<Self> {
         let now = coupler.keys.scene.as_ref()?;
-        let last = coupler.store.last_manifest(&name(coupler)).filter(|last| last.key() != now.key())?;
+        let last =
+            coupler.store.last_manifest(&coupler.scene_name()).filter(|last| last.key() != now.key())?;
         let keys = coupler.keys.earlier(&last)?;
         let stays = stays(&keys, &coupler.keys);
         let kept = stays.iter().flatten().count();
@@ -38,17 +40,17 @@ impl EarlierScene {
             return None;
         }
         let mut known: HashMap<Key, Arc<Surfaces>> = HashMap::new();
-        for (number, _) in coupler.keys.instances.iter().enumerate() {
+        for number in 0..coupler.keys.instances.len() {
             known
                 .entry(coupler.keys.part_of(number).key)
                 .or_insert_with(|| scenery.shared_surfaces_of(number));
         }
         for part in &keys.parts {
-            if !known.contains_key(&part.key) {
+            if let Entry::Vacant(unknown) = known.entry(part.key) {
                 let Lookup::Found(baked) = coupler.store.load::<BakedGeometry>(&part.key) else {
                     return None;
                 };
-                known.insert(part.key, Arc::new(Surfaces::new(&baked.geometry)));
+                unknown.insert(Arc::new(Surfaces::new(&baked.geometry)));
             }
         }
         let placed = keys.instances.iter().enumerate();
@@ -64,11 +66,7 @@ impl EarlierScene {
 
 /// Remembers the present scene for the next run.
 pub fn remember(coupler: &Coupler) -> Result<()> {
-    coupler.keys.scene.as_ref().map_or(Ok(()), |scene| coupler.store.remember(&name(coupler), scene))
-}
-
-fn name(coupler: &Coupler) -> String {
-    format!("placed parts of {}", coupler.file.display())
+    coupler.keys.scene.as_ref().map_or(Ok(()), |scene| coupler.store.remember(&coupler.scene_name(), scene))
 }
 
 /// For each earlier instance the present one with the same part and placement.

@@ -89,11 +89,12 @@ fn part(placed: &PlacedParts, number: usize, baked: &Baked) -> PartFate {
 
 fn blocks(placed: &PlacedParts, k: usize, coupled: &Coupled) -> Vec<String> {
     let name = |k: usize| placed.instances[k].name.clone();
+    let corrected = coupled.corrected.as_ref().filter(|own| !own.intruders.is_empty());
     let instance = InstanceFate {
         name: name(k),
         part: placed.part_of(k).part.name.clone(),
-        intruders: coupled.corrected.iter().flat_map(|own| &own.intruders).map(|&i| name(i)).collect(),
-        corrected: coupled.corrected.as_ref().map(|own| Fate::of(&own.origin)),
+        intruders: corrected.iter().flat_map(|own| &own.intruders).map(|&i| name(i)).collect(),
+        corrected: corrected.map(|own| Fate::of(&own.origin)),
         coupling: Fate::of(&coupled.origin),
     };
     let relit = placed.relit[k].as_ref();
@@ -118,7 +119,7 @@ fn unseen_clause(unseen: &[String]) -> String {
 pub fn seen_instances(placed: &PlacedParts, coupled: &Coupled) -> Vec<bool> {
     let mut seen = vec![false; placed.instances.len()];
     for sender in coupled.coupling.senders_seen() {
-        seen[placed.world.instance_of_node(sender)] = true;
+        seen[placed.instance_of_column(sender)] = true;
     }
     seen
 }

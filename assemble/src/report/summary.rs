@@ -161,7 +161,9 @@ fn exact_rows(measured: &ResidualStatistics) -> ExactRowsReport {
 fn blocks(sources: &ReportSources) -> Blocks {
     let Equation { placed, coupled, .. } = sources.equation;
     let baked = placed.parts.iter().filter(|part| !part.form_factors.is_reused()).count();
-    let corrected = coupled.iter().filter(|c| c.corrected.is_some()).count();
+    // By rays, what only touches a part may change its rows, too.
+    let has_intruders = |own: &&Coupled| own.corrected.as_ref().is_some_and(|own| !own.intruders.is_empty());
+    let corrected = coupled.iter().filter(has_intruders).count();
     let mut blocks = Blocks {
         self_baked: baked,
         self_reused: placed.instances.len().saturating_sub(baked + corrected),
