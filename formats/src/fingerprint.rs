@@ -152,6 +152,11 @@ impl Manifest {
         rest(self) == rest(other)
     }
 
+    /// Whether it begins with all entries of another.
+    pub fn extends(&self, other: &Self) -> bool {
+        self.entries.starts_with(&other.entries)
+    }
+
     /// Adds content by its digest, or another result by its key. Panics when the label is taken.
     pub fn digest(self, label: impl Into<String>, digest: impl Into<Digest>) -> Self {
         self.with(label.into(), Value::Digest(digest.into()))

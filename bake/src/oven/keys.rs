@@ -51,8 +51,11 @@ pub fn keys_of(scene: &Prepared, store: &Store, file: &Path) -> HashSet<Key> {
         let target = store.target(&corrected);
         keys.extend([coupling, store.target(&coupling), corrected, target, light(target), light(own)]);
         // Which places are sources is known after the rows only.
-        let last = |what| store.last_manifest(&placed.name(file, number, what));
-        keys.extend([SOURCES, SECONDARY_SOURCES].into_iter().filter_map(last).map(|last| last.key()));
+        let last = |what| {
+            let last = store.last_manifest(&placed.name(file, number, what))?;
+            last.extends(&placed.manifest(number, what)).then(|| last.key())
+        };
+        keys.extend([SOURCES, SECONDARY_SOURCES].into_iter().filter_map(last));
     }
     keys
 }
