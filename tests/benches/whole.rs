@@ -53,7 +53,7 @@ fn run(scene: &Scene, size: f64, rays: u32) -> Solved {
         peak_rss().unwrap_or(0) as f64 / 1e6,
         bytes / unknowns as f64,
         energy.absorbed[0] / energy.emitted[0],
-        100.0 * noise.over_mean,
+        100.0 * noise.whole.over_mean,
         solved.outcome.rounds.len(),
     );
     solved

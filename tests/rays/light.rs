@@ -84,7 +84,7 @@ fn closed_rooms_absorb_what_lamps_emit() {
 fn noise_is_what_was_measured_and_has_no_mean() {
     let scene = scene_of(furnished(1));
     let (few, many) = (solved(&scene, 0.4, 64), solved(&scene, 0.4, 4096));
-    let measured = noise(&few.equation, few.radiosity(), &few.irradiance, 256).expect("rays").over_mean;
+    let measured = noise(&few.equation, few.radiosity(), &few.irradiance, 256).expect("rays").whole.over_mean;
     let (mut square, mut shift, mut sum) = (0.0, 0.0, 0.0);
     for ((element, a), b) in few.elements().iter().zip(&few.irradiance).zip(&many.irradiance) {
         square += element.area * (a[0] - b[0]).powi(2);

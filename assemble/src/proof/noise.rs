@@ -8,18 +8,29 @@ use equilux_bake::rays::replicas::replicas;
 use equilux_bake::rays::samples::Samples;
 use equilux_bake::rays::scenery::Landing;
 use equilux_bake::rays::surfaces::End;
-use equilux_formats::Rgb;
+use equilux_formats::{Element, Rgb};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Independent sets of rays of a row.
 const REPLICAS: usize = 4;
 
 /// The noise of the irradiance of rows, in some of them.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Noise {
+    /// In the whole scene.
+    pub whole: NoiseOfRows,
+    /// In each instance.
+    pub by_instance: Vec<NoiseOfRows>,
+}
+
+/// The noise of the irradiance of some rows.
+#[derive(Debug, Clone, Copy)]
+pub struct NoiseOfRows {
     /// Number of rows.
     pub rows: usize,
-    /// Root mean square of their standard errors over the mean irradiance of all unknowns; the worst channel.
+    /// Root mean square of their standard errors over the mean irradiance of all elements of the scene, or of their instance;
+    /// the worst channel. 0 if no light arrives.
     pub over_mean: f64,
 }
 
@@ -42,13 +53,24 @@ pub fn noise(equation: &Equation, radiosity: &[Rgb], irradiance: &[Rgb], rows: u
     let chosen = evenly(equation, rows);
     let squares: Vec<Rgb> =
         chosen.par_iter().map(|&row| variance(replicas(scenery, &samples, row, light))).collect();
-    let elements = &placed.world.elements;
+    let of = |which: Range<usize>, squares: Vec<Rgb>| {
+        let over_mean = over_mean(&placed.world.elements[which.clone()], &irradiance[which], &squares);
+        NoiseOfRows { rows: squares.len(), over_mean }
+    };
+    let own =
+        |k: usize| chosen.iter().zip(&squares).filter(move |(row, _)| row.0 == k).map(|(_, &s)| s).collect();
+    let by_instance = (0..placed.instances.len()).map(|k| of(placed.world.elements_of(k), own(k))).collect();
+    let whole = of(0..irradiance.len(), squares);
+    irradiance.iter().any(|&h| h != Rgb::BLACK).then_some(Noise { whole, by_instance })
+}
+
+/// Root mean square of standard errors over the mean irradiance of these elements, the worst channel; 0 if no light arrives.
+fn over_mean(elements: &[Element], irradiance: &[Rgb], squares: &[Rgb]) -> f64 {
     let area: f64 = elements.iter().map(|element| element.area).sum();
     let mean = elements.iter().zip(irradiance).fold(Rgb::BLACK, |sum, (e, &h)| sum + h * (e.area / area));
     let sum = squares.iter().fold(Rgb::BLACK, |sum, &square| sum + square);
-    let share = |c: usize| (sum[c] / squares.len() as f64).sqrt() / mean[c];
-    let worst = (0..3).filter(|&c| mean[c] > 0.0).map(share).reduce(f64::max)?;
-    Some(Noise { rows: chosen.len(), over_mean: worst })
+    let share = |c: usize| (sum[c] / squares.len().max(1) as f64).sqrt() / mean[c];
+    (0..3).filter(|&c| mean[c] > 0.0).map(share).fold(0.0, f64::max)
 }
 
 /// The variance of independent values.

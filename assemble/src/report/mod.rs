@@ -6,6 +6,7 @@ mod details;
 pub mod fates;
 pub(crate) mod light_notes;
 mod notes;
+pub mod openings;
 pub mod process;
 pub mod seconds;
 pub mod summary;

@@ -12,6 +12,7 @@ use crate::proof::noise::Noise;
 use crate::proof::{Proof, ResidualStatistics};
 use crate::report::fates::seen_instances;
 use crate::report::notes::{notes, remarks};
+use crate::report::openings::dark_parts;
 use crate::report::process::peak_rss;
 use crate::report::seconds::seconds;
 use crate::statistics::{largest_difference, mean_difference, rms_over_mean, row_sum_defect};
@@ -46,7 +47,7 @@ pub struct ReportSources<'a> {
     /// The error of clusters, if there are clusters.
     pub proof: Option<&'a Proof>,
     /// The noise of rows by rays, if it was measured.
-    pub noise: Option<Noise>,
+    pub noise: Option<&'a Noise>,
     /// The classic solution, if requested.
     pub classic: Option<&'a Classic>,
 }
@@ -57,6 +58,7 @@ pub fn summary(sources: &ReportSources) -> Report {
     let Equation { placed, coupled, .. } = equation;
     let elements = placed.world.elements.len();
     let error = error(sources);
+    let dark = dark_parts(equation, systems, sources.noise);
     Report {
         scene: String::new(),
         elements,
@@ -81,8 +83,8 @@ pub fn summary(sources: &ReportSources) -> Report {
         verify: sources.classic.map(|classic| verification(placed, classic, outcome)),
         explained: vec![],
         advice: None,
-        notes: notes(placed, systems, outcome),
-        remarks: remarks(placed, coupled),
+        notes: [notes(placed, systems, outcome), dark.notes].concat(),
+        remarks: [remarks(placed, coupled), dark.remarks].concat(),
         outputs: vec![],
     }
 }
@@ -123,8 +125,11 @@ fn error(sources: &ReportSources) -> ErrorReport {
         let everywhere = vec![Rgb::splat(proved); radiosity.len()];
         let proved_rms = rms_over_mean(&placed.world.elements, &everywhere, radiosity);
         let noise = sources.noise.zip(sources.equation.rays());
-        let noise =
-            noise.map(|(noise, rays)| NoiseReport { rays, rows: noise.rows, rms_rel: noise.over_mean });
+        let noise = noise.map(|(noise, rays)| NoiseReport {
+            rays,
+            rows: noise.whole.rows,
+            rms_rel: noise.whole.over_mean,
+        });
         return ErrorReport {
             proved,
             proved_rms,

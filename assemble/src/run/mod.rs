@@ -86,7 +86,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         systems: &systems,
         outcome,
         proof: proof.as_ref(),
-        noise,
+        noise: noise.as_ref(),
         classic: classic.as_ref(),
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&sources) };
