@@ -193,18 +193,23 @@ impl Coupler<'_> {
 
     /// The blocks that an instance had in the earlier scene, if it was there and they are in the cache.
     fn earlier(&self, instance: usize, tracer: &RayTracer) -> Option<Earlier> {
-        let (earlier, _) = tracer.earlier.as_ref()?;
+        let (earlier, first) = tracer.earlier.as_ref()?;
         let number = earlier.number_of(instance)?;
         let keys =
             [COUPLING, CORRECTED].map(|what| self.store.target(&earlier.keys.manifest(number, what).key()));
-        let load = |key: &Key| match self.store.load::<Rows>(key) {
-            Lookup::Found(rows) => Some(rows),
+        let receivers = self.placed.unknowns_of(instance);
+        let load = |key: &Key, senders: usize| match self.store.load::<Rows>(key) {
+            // What the cache says of the earlier scene need not agree.
+            Lookup::Found(rows) => {
+                (rows.receivers() == receivers && rows.senders() == senders).then_some(rows)
+            }
             Lookup::Missing | Lookup::Damaged(_) => None,
         };
         let escapes = &self.placed.part_of(instance).part.escapes;
         let is_corrected = may_be_blocked(&earlier.scenery, number, escapes);
-        let self_block = if is_corrected { Some(load(&keys[1])?) } else { None };
-        Some(Earlier { number, self_block, others: load(&keys[0])?, keys })
+        let self_block = if is_corrected { Some(load(&keys[1], receivers)?) } else { None };
+        let senders = *first.last()? as usize + SkyCells::COUNT;
+        Some(Earlier { number, self_block, others: load(&keys[0], senders)?, keys })
     }
 
     /// The self block of an instance with others between its surfaces, and its local equilibrium.

@@ -53,6 +53,9 @@ impl EarlierScene {
                 unknown.insert(Arc::new(Surfaces::new(&baked.geometry)));
             }
         }
+        if keys.parts.iter().any(|part| known[&part.key].unknowns() != part.senders) {
+            return None;
+        }
         let placed = keys.instances.iter().enumerate();
         let placed = placed.map(|(k, instance)| (known[&keys.part_of(k).key].clone(), instance.placement));
         Some(Self { scenery: Scenery::new(placed), keys, stays })

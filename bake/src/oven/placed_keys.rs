@@ -7,6 +7,7 @@ use equilux_formats::fingerprint::{Key, Manifest};
 use equilux_formats::{Instance, PartId};
 use glam::DAffine3;
 use std::path::Path;
+use std::str::Split;
 
 /// The block between an instance and all others, in manifests and in the cache.
 pub const COUPLING: &str = "coupling";
@@ -66,16 +67,10 @@ impl std::str::FromStr for RelativePlacement {
 
     /// Parses the displayed form.
     fn from_str(text: &str) -> std::result::Result<Self, ()> {
-        let mut words = text.split(' ');
-        let mut next = || words.next().ok_or(());
-        let part = next()?.parse()?;
-        let senders = next()?.parse().map_err(|_| ())?;
-        let exponent = next()?.parse().map_err(|_| ())?;
-        let mut steps = [0; 12];
-        for step in &mut steps {
-            *step = next()?.parse().map_err(|_| ())?;
-        }
-        Ok(Self { part, senders, placement: RoundedPlacement { steps, exponent } })
+        let (BakedKey { key, senders }, mut words) = part_in(text)?;
+        let exponent = words.next().ok_or(())?.parse().map_err(|_| ())?;
+        let steps = twelve(words, |word| word.parse().ok())?;
+        Ok(Self { part: key, senders, placement: RoundedPlacement { steps, exponent } })
     }
 }
 
@@ -198,17 +193,24 @@ impl std::str::FromStr for ExactPlacement {
 
     /// Parses the displayed form.
     fn from_str(text: &str) -> std::result::Result<Self, ()> {
-        let mut words = text.split(' ');
-        let mut next = || words.next().ok_or(());
-        let key = next()?.parse()?;
-        let senders = next()?.parse().map_err(|_| ())?;
-        let mut numbers = [0.0; 12];
-        for number in &mut numbers {
-            *number = f64::from_bits(u64::from_str_radix(next()?, 16).map_err(|_| ())?);
-        }
-        let placement = DAffine3::from_cols_array(&numbers);
-        Ok(Self { part: BakedKey { key, senders }, placement })
+        let (part, words) = part_in(text)?;
+        let numbers = twelve(words, |word| u64::from_str_radix(word, 16).ok().map(f64::from_bits))?;
+        Ok(Self { part, placement: DAffine3::from_cols_array(&numbers) })
     }
+}
+
+/// The part that a displayed placement begins with, and the words after it.
+fn part_in(text: &str) -> Result<(BakedKey, Split<'_, char>), ()> {
+    let mut words = text.split(' ');
+    let key = words.next().ok_or(())?.parse()?;
+    let senders = words.next().ok_or(())?.parse().map_err(|_| ())?;
+    Ok((BakedKey { key, senders }, words))
+}
+
+/// The numbers of a placement.
+fn twelve<T>(words: Split<char>, parse: impl Fn(&str) -> Option<T>) -> Result<[T; 12], ()> {
+    let numbers: Option<Vec<T>> = words.map(parse).collect();
+    numbers.and_then(|numbers| numbers.try_into().ok()).ok_or(())
 }
 
 /// Numbers and relative placements of the other instances that a block's manifest records; none if it is not such a manifest.
