@@ -83,6 +83,7 @@ fn assemble_says_in_a_sentence_what_became_of_each_part_and_block() {
             "light of crate, repainted, computed: never computed before",
         ],
     );
+    assert!(said(&[]).contains("form factors: all from the cache"), "nothing was left to compute");
     let report: serde_json::Value = serde_json::from_str(&said(&["--explain", "--json"])).expect("a report");
     assert_eq!(report["explained"].as_array().map(Vec::len), Some(5 + 5 + 1 + 1), "{report:#}");
 }

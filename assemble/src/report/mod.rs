@@ -104,8 +104,10 @@ pub struct Blocks {
     pub self_baked: usize,
     /// Self blocks taken from the cache or shared by instances.
     pub self_reused: usize,
-    /// Self blocks recomputed because other instances are inside the part.
+    /// Self blocks that differ from those of the part because other instances are inside it.
     pub self_corrected: usize,
+    /// Those of them that came from the cache.
+    pub self_corrected_reused: usize,
     /// Coupling blocks computed in this run.
     pub coupling_computed: usize,
     /// Coupling blocks taken from the cache.

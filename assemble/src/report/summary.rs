@@ -167,12 +167,14 @@ fn blocks(sources: &ReportSources) -> Blocks {
     let Equation { placed, coupled, .. } = sources.equation;
     let baked = placed.parts.iter().filter(|part| !part.form_factors.is_reused()).count();
     // By rays, what only touches a part may change its rows, too.
-    let has_intruders = |own: &&Coupled| own.corrected.as_ref().is_some_and(|own| !own.intruders.is_empty());
-    let corrected = coupled.iter().filter(has_intruders).count();
+    let corrected = coupled.iter().filter_map(|own| own.corrected.as_ref());
+    let corrected: Vec<_> =
+        corrected.filter(|own| !own.intruders.is_empty()).map(|own| &own.origin).collect();
     let mut blocks = Blocks {
         self_baked: baked,
-        self_reused: placed.instances.len().saturating_sub(baked + corrected),
-        self_corrected: corrected,
+        self_reused: placed.instances.len().saturating_sub(baked + corrected.len()),
+        self_corrected: corrected.len(),
+        self_corrected_reused: corrected.iter().filter(|origin| origin.is_reused()).count(),
         ..Blocks::default()
     };
     let mut unseen = 0;

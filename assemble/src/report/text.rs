@@ -43,8 +43,9 @@ impl Report {
 
     fn computed_line(&self) -> String {
         let blocks = &self.blocks;
-        let computed = blocks.self_baked + blocks.self_corrected + blocks.coupling_computed;
-        let reused = blocks.self_reused + blocks.coupling_reused;
+        let corrected = blocks.self_corrected - blocks.self_corrected_reused;
+        let computed = blocks.self_baked + corrected + blocks.coupling_computed;
+        let reused = blocks.self_reused + blocks.self_corrected_reused + blocks.coupling_reused;
         match (self.form_factors_computed, computed) {
             (0, 0) => "form factors: all from the cache".into(),
             (form_factors, _) => {
