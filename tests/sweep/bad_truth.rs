@@ -27,7 +27,7 @@ fn a_table_that_is_no_truth_is_a_named_error() {
         if let Some(text) = text {
             std::fs::write(workshop.path(&file), text).expect("a file");
         }
-        let ended = workshop.run("assemble", &["sweep", "scene.glb", "--truth", &file, "--budget", "5"]);
+        let ended = workshop.run("assemble", &["sweep", "scene.glb", "--truth", &file, "--budget", "20"]);
         assert_eq!(ended.code, Some(1), "{name}: {}", ended.stderr);
         assert!(ended.stderr.contains(&file), "{name} is not named: {}", ended.stderr);
         assert!(ended.stderr.contains(found), "{name}: no `{found}` in: {}", ended.stderr);

@@ -53,11 +53,11 @@ fn family(kind: Kind) -> u8 {
     }
 }
 
-/// The quantity that time is proportional to within a family: rays of a row, and about as much again that does not depend on
-/// them; rays of a pair; or shots, of which equally many halve the unshot light each time.
+/// The quantity that time is proportional to within a family: rays of a row, and as much as 1024 of them for the light at
+/// points, which does not depend on them; rays of a pair; or shots, of which equally many halve the unshot light each time.
 fn effort(kind: Kind) -> f64 {
     match kind {
-        Kind::Parts { tolerance } if tolerance > 0.0 => f64::from(256 + rays_for_tolerance(tolerance)),
+        Kind::Parts { tolerance } if tolerance > 0.0 => f64::from(1024 + rays_for_tolerance(tolerance)),
         Kind::Rays(rays) => f64::from(rays),
         Kind::Progressive { unshot } => -unshot.ln(),
         _ => 1.0,
