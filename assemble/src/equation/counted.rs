@@ -130,11 +130,23 @@ impl Coupler<'_> {
         let corrected = may_be_blocked(tracer.scenery, instance, &part.escapes).then(|| {
             self.stored(instance, CORRECTED, || {
                 let Traced { rows, earlier } = rows()?;
-                let own = rows.self_block.clone().unwrap_or_else(|| part.self_block.clone());
-                Ok(made(own, earlier.as_ref().map(|e| (e.self_block.as_ref(), e.keys[1]))))
+                let changes =
+                    |own: Option<&Rows>| own.unwrap_or(&part.self_block).changes_from(&part.self_block);
+                let before = earlier
+                    .as_ref()
+                    .map(|e| (e.self_block.as_ref().map(|own| changes(Some(own))), e.keys[1]));
+                Ok(made(
+                    changes(rows.self_block.as_ref()),
+                    before.as_ref().map(|(before, key)| (before.as_ref(), *key)),
+                ))
             })
         });
-        let corrected = corrected.transpose()?.map(|block| self.corrected(instance, block)).transpose()?;
+        // What only touches the part often changes nothing.
+        let corrected = corrected
+            .transpose()?
+            .and_then(|(changes, origin)| Some((changes.applied_to(&part.self_block)?, origin)))
+            .map(|block| self.corrected(instance, block))
+            .transpose()?;
         let [coupling, sky] = others.parted(self.placed.columns());
         let computed_by_row = traced.get().map_or(vec![], |traced| traced.rows.traced.clone());
         let rays = computed_by_row.iter().map(|&rays| rays as usize).sum();
@@ -205,9 +217,14 @@ impl Coupler<'_> {
             }
             Lookup::Missing | Lookup::Damaged(_) => None,
         };
-        let escapes = &self.placed.part_of(instance).part.escapes;
-        let is_corrected = may_be_blocked(&earlier.scenery, number, escapes);
-        let self_block = if is_corrected { Some(load(&keys[1], receivers)?) } else { None };
+        let part = &self.placed.part_of(instance).part;
+        let is_corrected = may_be_blocked(&earlier.scenery, number, &part.escapes);
+        let self_block = if is_corrected {
+            let changes = load(&keys[1], receivers)?;
+            Some(changes.applied_to(&part.self_block).unwrap_or_else(|| part.self_block.clone()))
+        } else {
+            None
+        };
         let senders = *first.last()? as usize + SkyCells::COUNT;
         Some(Earlier { number, self_block, others: load(&keys[0], senders)?, keys })
     }

@@ -77,9 +77,10 @@ impl DirectByRays<'_> {
         }
         for sun in &lights.suns {
             let source = Source::new(sun.polygons.elements.clone());
-            let light = self.on_elements(|unknown| {
-                let seen = form_factors(self.scenery, unknown, &[(0, &source)], Effort::SUN);
-                seen.iter().fold(Rgb::BLACK, |sum, &(_, value)| sum + sun.radiosity * value)
+            let light = self.on_elements(|(instance, unknown)| {
+                let one = unknown..unknown + 1;
+                let seen = form_factors(self.scenery, instance, one, &[(0, &source)], Effort::SUN);
+                seen.iter().flatten().fold(Rgb::BLACK, |sum, &(_, value)| sum + sun.radiosity * value)
             });
             arriving.add(&sun.name, sun.power, elements, &light);
         }

@@ -24,6 +24,9 @@ use std::sync::OnceLock;
 /// rows, is neither lost nor counted twice.
 const NEIGHBOURS: usize = 512;
 
+/// Unknowns for which it is found out together what stands between them and a source. They share a list of sources.
+const BUNDLE: usize = 32;
+
 /// Above this share of the scene's area, emitting surfaces are no sources: nearly everything emits, and rows of counted
 /// rays carry it better.
 const MOST_EMITTING: f64 = 0.5;
@@ -32,7 +35,7 @@ const MOST_EMITTING: f64 = 0.5;
 const BRIGHT: f64 = 4.0;
 
 /// Secondary sources are at most this share of all elements, the brightest,
-const MOST_SECONDARY: f64 = 0.0125;
+const MOST_SECONDARY: f64 = 0.02;
 
 /// or this many in a small scene.
 const FEW_SECONDARY: f64 = 64.0;
@@ -177,19 +180,13 @@ impl Sources {
         let blocks = Blocks { placed, coupled };
         let facing = self.facing.get_or_init(|| self.facing(&blocks));
         let rays = coupler.resolution.rays.unwrap_or(1);
-        let row = |unknown: usize| {
-            if monitor.stopped() {
-                return vec![];
-            }
-            let near = &facing[instance][unknown / NEIGHBOURS];
-            let sources: Vec<(u32, &Source)> = near.iter().map(|&n| (n, &self.sources[n as usize])).collect();
-            // The light is the average over what is not covered.
+        // The light is the average over what is not covered; what is not met by form factors arrives along the row.
+        let row = |unknown: usize, near: &[u32], seen: Vec<(u32, f64)>| {
             let open = blocks.own(instance).share_of_rays(unknown, rays);
-            let mut row: BTreeMap<u32, f64> =
-                form_factors(scenery, (instance, unknown), &sources, self.effort)
-                    .into_iter()
-                    .map(|(source, value)| (source, if open > 0.0 { value / open } else { 0.0 }))
-                    .collect();
+            let mut row: BTreeMap<u32, f64> = seen
+                .into_iter()
+                .map(|(source, value)| (source, if open > 0.0 { value / open } else { 0.0 }))
+                .collect();
             for (column, value) in blocks.row(instance, unknown) {
                 let others =
                     self.on_column[column].iter().filter(|source| near.binary_search(source).is_err());
@@ -197,8 +194,20 @@ impl Sources {
             }
             row.into_iter().collect()
         };
-        let unknowns = 0..placed.unknowns_of(instance);
-        let rows: Vec<Vec<(u32, f64)>> = unknowns.into_par_iter().map(row).collect();
+        let unknowns = placed.unknowns_of(instance);
+        let bundle = |number: usize| -> Vec<Vec<(u32, f64)>> {
+            if monitor.stopped() {
+                return vec![];
+            }
+            let first = number * BUNDLE;
+            let near = &facing[instance][first / NEIGHBOURS];
+            let sources: Vec<(u32, &Source)> = near.iter().map(|&n| (n, &self.sources[n as usize])).collect();
+            let bundle = first..unknowns.min(first + BUNDLE);
+            let seen = form_factors(scenery, instance, bundle.clone(), &sources, self.effort);
+            bundle.zip(seen).map(|(unknown, seen)| row(unknown, near, seen)).collect()
+        };
+        let bundles = (0..unknowns.div_ceil(BUNDLE)).into_par_iter();
+        let rows: Vec<Vec<(u32, f64)>> = bundles.flat_map_iter(bundle).collect();
         if monitor.stopped() {
             return Err(Error::Stopped);
         }

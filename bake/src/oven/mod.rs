@@ -31,7 +31,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
-pub const KERNEL_VERSION: u32 = 8;
+pub const KERNEL_VERSION: u32 = 9;
 
 /// A baked part, with origins and times.
 #[derive(Debug)]

@@ -10,6 +10,7 @@ use crate::geometry::aabb::Aabb;
 use crate::geometry::tolerance::{SAME_HIT, TRIPLE_PRODUCT};
 use equilux_formats::Face;
 use glam::DVec3;
+use smallvec::SmallVec;
 
 /// A face that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +49,7 @@ impl FaceTree {
     /// The tree over these faces.
     pub fn new(faces: &[Face]) -> Self {
         let all: Vec<Plate> = faces.iter().enumerate().flat_map(|(n, face)| plates(n as u32, face)).collect();
-        let boxes: Vec<Aabb> = all.iter().map(|plate| Aabb::around(plate.corners())).collect();
+        let boxes: Vec<Aabb> = all.iter().map(Plate::bounds).collect();
         let tree = WideTree::new(&boxes, LANES);
         let leaf = |items: &Vec<u32>| {
             let own: Vec<Plate> = items.iter().map(|&item| all[item as usize]).collect();
@@ -71,6 +72,17 @@ impl FaceTree {
     /// The box around all faces.
     pub fn bounds(&self) -> Aabb {
         self.tree.bounds
+    }
+
+    /// The plates of the faces in leaves whose boxes meet `around`, each once; none if there are more than `most` leaves.
+    pub fn plates_in(&self, around: &Aabb, most: usize) -> Option<Vec<Plate>> {
+        let leaves = self.tree.meeting(around, most)?;
+        let mut faces: Vec<u32> = leaves.into_iter().flat_map(|leaf| self.plates[leaf].faces).collect();
+        faces.sort_unstable();
+        faces.dedup();
+        // What fills a leaf up is the number of no face.
+        let faces = faces.into_iter().filter_map(|number| Some((number, self.faces.get(number as usize)?)));
+        Some(faces.flat_map(|(number, face)| plates(number, face)).collect())
     }
 
     /// The first face on the ray with t up to `most`.
@@ -175,7 +187,7 @@ impl<const ANY: bool> Visitor for Search<'_, ANY> {
 }
 
 /// The triangles and parallelograms of a face.
-fn plates(number: u32, face: &Face) -> Vec<Plate> {
+fn plates(number: u32, face: &Face) -> SmallVec<[Plate; 1]> {
     let corners = &face.corners;
     let plate = |corner: DVec3, u: DVec3, v: DVec3, is_parallelogram| Plate {
         face: number,
@@ -186,7 +198,7 @@ fn plates(number: u32, face: &Face) -> Vec<Plate> {
     if let &[a, b, c, d] = corners.as_slice()
         && ((a + c) - (b + d)).abs().max_element() <= SAME_HIT * (c - a).length()
     {
-        return vec![plate(a, b, d, true)];
+        return SmallVec::from([plate(a, b, d, true)]);
     }
     // A fan. Its triangles may be slivers, so what they miss by rounding is met by their neighbours' slack.
     let fan = corners.windows(2).skip(1).map(|edge| plate(corners[0], edge[0], edge[1], false));

@@ -83,6 +83,17 @@ impl Emitters {
         self.bounds
     }
 
+    /// The outermost places on each of its pieces, between which all others lie.
+    pub fn extremes(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
+        self.pieces.iter().flat_map(move |piece| corners.map(|(u, v)| piece.place(u, v)))
+    }
+
+    /// The normal of each of its pieces.
+    pub fn normals(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.pieces.iter().map(|piece| piece.frame[2])
+    }
+
     /// A place on it, set off its plane, and the normal there, from two numbers in 0..1.
     #[inline(always)]
     pub fn place(&self, mut u: f64, v: f64) -> (DVec3, DVec3) {

@@ -10,6 +10,7 @@
 //! element_grid → surfaces           the unknown at a place on a face
 //! scenery                           the same among placed parts
 //! alone → counts → recounts         what the rays of a row end on, in its part, in a scene, after an edit; replicas: how uncertain that is
+//! obstacles                         what may stand between two groups of places
 //! sources                           form factors to small, bright polygons, by shadow rays
 //! ```
 //!
@@ -22,6 +23,7 @@ mod face_tree;
 pub mod hemisphere;
 mod index;
 mod lanes;
+mod obstacles;
 mod plates;
 pub mod recounts;
 pub mod replicas;

@@ -5,7 +5,8 @@
 
 use super::lanes::{LANES, Lanes, Mask, max, min};
 use super::wide_tree::Ray32;
-use glam::DVec3;
+use crate::geometry::aabb::Aabb;
+use glam::{DAffine3, DVec3};
 
 /// A triangle or parallelogram of a face.
 #[derive(Debug, Clone, Copy)]
@@ -21,12 +22,17 @@ pub struct Plate {
 }
 
 impl Plate {
-    /// Its corners.
-    pub fn corners(&self) -> Vec<DVec3> {
-        let [u, v] = self.edges;
-        let mut corners = vec![self.corner, self.corner + u, self.corner + v];
-        corners.extend(self.is_parallelogram.then_some(self.corner + u + v));
-        corners
+    /// The box around it.
+    pub fn bounds(&self) -> Aabb {
+        let (corner, [u, v]) = (self.corner, self.edges);
+        let last = if self.is_parallelogram { corner + u + v } else { corner };
+        Aabb::around([corner, corner + u, corner + v, last])
+    }
+
+    /// The plate moved.
+    pub fn moved(&self, by: &DAffine3) -> Self {
+        let edges = self.edges.map(|edge| by.transform_vector3(edge));
+        Self { corner: by.transform_point3(self.corner), edges, ..*self }
     }
 }
 

@@ -5,6 +5,7 @@
 //! the box of its part can meet only instances whose boxes meet that box, which are few.
 
 use super::face_tree::FaceHit;
+use super::plates::Plate;
 use super::surfaces::{End, Surfaces};
 use super::wide_tree::{Ray, Ray32, Visitor, WideTree};
 use crate::geometry::aabb::Aabb;
@@ -139,7 +140,7 @@ impl Scenery {
     pub fn land_after(&self, instance: usize, ray: &Ray, own: Option<FaceHit>, near: f64) -> Option<Landing> {
         let nearest = own.map(|hit| (instance, hit, *ray));
         let most = own.map_or(f64::INFINITY, |hit| hit.t);
-        let (number, hit, there) = self.others(instance, ray, most, nearest)?;
+        let (number, hit, there) = self.others::<false>(instance, ray, most, nearest)?;
         let end = self.places[number].surfaces.end(&there, &hit, near);
         Some(Landing { instance: number, end, t: hit.t })
     }
@@ -161,12 +162,43 @@ impl Scenery {
         search.nearest.is_some()
     }
 
-    /// The nearest hit with t up to `most` in the other instances; `nearest` if there is none.
+    /// The same for a ray in the coordinates of an instance.
     #[inline(always)]
-    fn others(&self, instance: usize, ray: &Ray, most: f64, nearest: Option<Nearest>) -> Option<Nearest> {
+    pub fn is_blocked(&self, instance: usize, ray: &Ray) -> bool {
+        self.places[instance].surfaces.tree.is_met(ray, 1.0)
+            || self.others::<true>(instance, ray, 1.0, None).is_some()
+    }
+
+    /// Plates in the coordinates of an instance, all that meet `around` among them; none if they are in more than `most` leaves
+    /// of the tree of a part.
+    pub fn plates_in(&self, instance: usize, around: Aabb, most: usize) -> Option<Vec<Plate>> {
+        let Place { surfaces, placement, inverse, .. } = &self.places[instance];
+        let mut plates = surfaces.tree.plates_in(&around, most)?;
+        let in_scene = moved(around, placement);
+        for other in self.tree.meeting(in_scene) {
+            let other = self.all.instances[other as usize] as usize;
+            let there = &self.places[other];
+            if other != instance && there.bounds.meets(&in_scene) {
+                let to_here = *inverse * there.placement;
+                let found = there.surfaces.tree.plates_in(&moved(in_scene, &there.inverse), most)?;
+                plates.extend(found.into_iter().map(|plate| plate.moved(&to_here)));
+            }
+        }
+        Some(plates)
+    }
+
+    /// The nearest hit with t up to `most` in the other instances, or any; `nearest` if there is none.
+    #[inline(always)]
+    fn others<const ANY: bool>(
+        &self,
+        instance: usize,
+        ray: &Ray,
+        most: f64,
+        nearest: Option<Nearest>,
+    ) -> Option<Nearest> {
         let near = &self.near[instance];
         let own = Some(instance);
-        let mut search = Search::<false> { scenery: self, own, ray, among: &near.others, nearest };
+        let mut search = Search::<ANY> { scenery: self, own, ray, among: &near.others, nearest };
         if most.is_finite() && near.bounds.holds(ray.origin) && near.bounds.holds(ray.at(most)) {
             near.others.tree.along(ray, most, &mut search);
         } else if self.places.len() > 1 {
@@ -322,6 +354,9 @@ mod tests {
             let is_between = |t: f64| scenery.is_between(&Ray { origin, direction: direction * t });
             prop_assert_eq!(is_between(most * 1.001), landing.is_some());
             prop_assert_eq!(is_between(most * 0.999), false);
+            let is_blocked = |t: f64| scenery.is_blocked(from, &Ray { direction: ray.direction * t, ..ray });
+            prop_assert_eq!(is_blocked(most * 1.001), landing.is_some());
+            prop_assert_eq!(is_blocked(most * 0.999), false);
         }
     }
 }

@@ -10,14 +10,17 @@
 //! 1990 for the product).
 
 use super::hemisphere::Emitters;
+use super::obstacles::{Barrier, Between, Eight, Few, Hull, LANES, between, stopped};
 use super::scenery::Scenery;
 use super::sobol;
 use super::wide_tree::Ray;
 use crate::form_factor::contour::form_factor;
 use crate::geometry::polygon::{Clipped, clip, distance};
+use crate::world::place_element;
 use equilux_formats::{Element, Rgb};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
+use std::ops::Range;
 use std::sync::LazyLock;
 
 /// How many shadow rays a form factor takes.
@@ -69,22 +72,27 @@ impl Source {
         Self { elements, places, area }
     }
 
+    fn moved(&self, by: DAffine3) -> Self {
+        Self::new(self.elements.iter().map(|element| place_element(element, by, 0)).collect())
+    }
+
     /// The polygon, unless there are several.
     fn polygon(&self) -> Option<&Element> {
         if let [polygon] = self.elements.as_slice() { Some(polygon) } else { None }
     }
 }
 
-/// The form factors from an unknown of an instance to those of `sources` that it sees, with their places among them.
+/// The form factors from each of some neighbouring unknowns of an instance to those of `sources` that it sees, with their places
+/// among them.
 pub fn form_factors(
     scenery: &Scenery,
-    (instance, unknown): (usize, usize),
+    instance: usize,
+    unknowns: Range<usize>,
     sources: &[(u32, &Source)],
     effort: Effort,
-) -> Vec<(u32, f64)> {
-    let receiver = Receiver { scenery, instance, unknown };
+) -> Vec<Vec<(u32, f64)>> {
     // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
-    pulp::Arch::new().dispatch(Seen { receiver, sources, effort })
+    pulp::Arch::new().dispatch(Neighbours { scenery, instance, unknowns, sources, effort })
 }
 
 /// The mean of `light` over so many places on an unknown of an instance: of a place and its normal, in scene coordinates.
@@ -94,66 +102,101 @@ pub fn mean_over(
     places: u32,
     light: impl Fn(DVec3, DVec3) -> Rgb,
 ) -> Rgb {
-    let receiver = Receiver { scenery, instance, unknown };
+    let receiver = Receiver::new(scenery, instance, unknown);
+    let placement = scenery.placement_of(instance);
     let at = |k: u32| {
         let (u, v) = receiver.scattered(k as usize);
-        let (place, normal) = receiver.place(u, v);
-        light(place, normal)
+        let (place, normal) = receiver.area.place(u, v);
+        light(placement.transform_point3(place), placement.transform_vector3(normal).normalize())
     };
     (0..places).map(at).fold(Rgb::BLACK, |sum, light| sum + light) / f64::from(places)
 }
 
-struct Seen<'a> {
-    receiver: Receiver<'a>,
+struct Neighbours<'a> {
+    scenery: &'a Scenery,
+    instance: usize,
+    unknowns: Range<usize>,
     sources: &'a [(u32, &'a Source)],
     effort: Effort,
 }
 
-impl pulp::NullaryFnOnce for Seen<'_> {
-    type Output = Vec<(u32, f64)>;
+impl pulp::NullaryFnOnce for Neighbours<'_> {
+    type Output = Vec<Vec<(u32, f64)>>;
 
     #[inline(always)]
-    fn call(self) -> Vec<(u32, f64)> {
-        let Self { receiver, sources, effort } = self;
-        let mut open: Vec<(u32, &Source, f64)> = Vec::with_capacity(sources.len());
+    fn call(self) -> Vec<Vec<(u32, f64)>> {
+        let Self { scenery, instance, unknowns, sources, effort } = self;
+        let areas = unknowns.clone().map(|unknown| scenery.surfaces_of(instance).emitters(unknown));
+        let here = Hull::around(areas);
+        let to_here = scenery.placement_of(instance).inverse();
+        let mut candidates = Vec::with_capacity(sources.len());
         for &(number, source) in sources {
-            let unoccluded = receiver.unoccluded(source);
-            if unoccluded > 0.0 {
-                open.push((number, source, unoccluded));
+            let source = source.moved(to_here);
+            let hull = Hull::around(std::iter::once(&source.places));
+            let between = between(scenery, instance, &here, &hull);
+            if !matches!(between, Between::Hidden) {
+                candidates.push(Candidate { number, source, hull, between });
             }
         }
-        let most = open.iter().map(|&(_, _, f)| f).fold(0.0, f64::max);
-        let mut seen = Vec::with_capacity(open.len());
-        for (number, source, unoccluded) in open {
-            // Errors of independent sources add up as squares, so the weaker need fewer rays.
-            let importance = (unoccluded / most).sqrt();
-            let rays = [0, 1].map(|k| (effort.most[k] * importance).max(effort.fewest[k]).ceil() as u32);
-            let value = match source.polygon() {
-                Some(_) => unoccluded * receiver.visible((number, source), rays),
-                None => receiver.counted((number, source), rays[1]),
-            };
-            if value != 0.0 {
-                seen.push((number, value));
-            }
+        let mut rows = Vec::with_capacity(unknowns.len());
+        for unknown in unknowns {
+            rows.push(Receiver::new(scenery, instance, unknown).form_factors(&candidates, effort));
         }
-        seen
+        rows
     }
 }
 
-/// An unknown of an instance.
+/// A source that some neighbouring unknowns may see, in the coordinates of their instance.
+struct Candidate {
+    number: u32,
+    source: Source,
+    hull: Hull,
+    between: Between<Vec<Barrier>>,
+}
+
+/// An unknown of an instance, in the coordinates of that.
 struct Receiver<'a> {
     scenery: &'a Scenery,
     instance: usize,
     unknown: usize,
+    area: &'a Emitters,
 }
 
-impl Receiver<'_> {
-    /// A place on it and the normal there, in scene coordinates, from two numbers in 0..1.
+impl<'a> Receiver<'a> {
+    fn new(scenery: &'a Scenery, instance: usize, unknown: usize) -> Self {
+        Self { scenery, instance, unknown, area: scenery.surfaces_of(instance).emitters(unknown) }
+    }
+
     #[inline(always)]
-    fn place(&self, u: f64, v: f64) -> (DVec3, DVec3) {
-        let (point, normal) = self.scenery.surfaces_of(self.instance).emitters(self.unknown).place(u, v);
-        let placement = self.scenery.placement_of(self.instance);
-        (placement.transform_point3(point), placement.transform_vector3(normal).normalize())
+    fn form_factors(&self, candidates: &[Candidate], effort: Effort) -> Vec<(u32, f64)> {
+        let hull = Hull::around(std::iter::once(self.area));
+        let mut open = Vec::with_capacity(candidates.len());
+        for candidate in candidates {
+            let between = candidate.between.narrowed(&hull, &candidate.hull);
+            if matches!(between, Between::Hidden) {
+                continue;
+            }
+            let unoccluded = self.unoccluded(&candidate.source);
+            if unoccluded > 0.0 {
+                open.push((Sight { receiver: self, candidate, between }, unoccluded));
+            }
+        }
+        let most = open.iter().map(|&(_, f)| f).fold(0.0, f64::max);
+        let mut seen = Vec::with_capacity(open.len());
+        for (sight, unoccluded) in &open {
+            // Errors of independent sources add up as squares, so the weaker need fewer rays.
+            let importance = (unoccluded / most).sqrt();
+            let rays = [0, 1].map(|k| (effort.most[k] * importance).max(effort.fewest[k]).ceil() as u32);
+            let Candidate { number, source, .. } = sight.candidate;
+            let value = match source.polygon() {
+                Some(_) => unoccluded * sight.visible(rays),
+                None => sight.counted(rays[1]),
+            };
+            if value != 0.0 {
+                seen.push((*number, value));
+            }
+        }
+        seen
     }
 
     /// The average of the contour integral over it, nothing being in the way. Of several polygons a rough value, which decides
@@ -161,12 +204,9 @@ impl Receiver<'_> {
     fn unoccluded(&self, source: &Source) -> f64 {
         let Some(polygon) = source.polygon() else { return self.roughly(source) };
         let corners = polygon.corners.as_slice();
-        let emitters = self.scenery.surfaces_of(self.instance).emitters(self.unknown);
-        let placement = self.scenery.placement_of(self.instance);
-        let bounds = emitters.bounds();
-        let centre = placement.transform_point3(bounds.centre());
-        let size = placement.transform_vector3(bounds.size()).length();
-        let apart = (distance(centre, corners) - size / 2.0).max(size / 16.0);
+        let bounds = self.area.bounds();
+        let size = bounds.diagonal();
+        let apart = (distance(bounds.centre(), corners) - size / 2.0).max(size / 16.0);
         let nearness = POINTS_PER_NEARNESS * size / apart;
         let pairs = (nearness.ceil() as usize).clamp(1, FINEST / 2);
         // Two Gauss points in each interval; one if it is small and far.
@@ -176,12 +216,12 @@ impl Receiver<'_> {
             if points == 1 { 0.5 } else { ((k / 2) as f64 + off) / pairs as f64 }
         };
         // A grid would meet only some pieces of a patch, and not the middle of a triangle.
-        let is_grid = emitters.is_parallelogram();
+        let is_grid = self.area.is_parallelogram();
         let count = if is_grid { points * points } else { FEWEST_SCATTERED.max(points * points) };
         let mut sum = 0.0;
         for k in 0..count {
             let (u, v) = if is_grid { (at(k % points), at(k / points)) } else { self.scattered(k) };
-            let (point, normal) = self.place(u, v);
+            let (point, normal) = self.area.place(u, v);
             if polygon.normal.dot(point - corners[0]) <= 0.0 {
                 continue;
             }
@@ -203,59 +243,106 @@ impl Receiver<'_> {
 
     /// A/π d², at most 1.
     fn roughly(&self, source: &Source) -> f64 {
-        let emitters = self.scenery.surfaces_of(self.instance).emitters(self.unknown);
-        let centre = self.scenery.placement_of(self.instance).transform_point3(emitters.bounds().centre());
-        let apart = (source.places.bounds().centre() - centre).length_squared();
+        let apart = (source.places.bounds().centre() - self.area.bounds().centre()).length_squared();
         source.area / (source.area + PI * apart)
-    }
-
-    /// The share of the light of a polygon that arrives, by so many rays at first and in all.
-    #[inline(always)]
-    fn visible(&self, (number, source): (u32, &Source), [first, all]: [u32; 2]) -> f64 {
-        let seed = self.seed(number);
-        let (mut open, mut sum) = (0.0, 0.0);
-        // What the first rays agree on, and how much a later disagreement counts.
-        let (mut agreed, mut weight_of_more) = (0.0, 1.0);
-        for k in 0..all {
-            if k == first && sum > 0.0 && (open == 0.0 || open == sum) {
-                agreed = open / sum;
-                if !seed.is_multiple_of(GO_ON) {
-                    return agreed;
-                }
-                weight_of_more = f64::from(GO_ON);
-            }
-            let (weight, arriving) = self.shadow_ray(source, places(k, seed));
-            sum += weight;
-            open += arriving;
-        }
-        if sum > 0.0 { agreed + (open / sum - agreed) * weight_of_more } else { 0.0 }
-    }
-
-    /// The form factor of several polygons by so many rays.
-    #[inline(always)]
-    fn counted(&self, (number, source): (u32, &Source), rays: u32) -> f64 {
-        let seed = self.seed(number);
-        let sum: f64 = (0..rays).map(|k| self.shadow_ray(source, places(k, seed)).1).sum();
-        source.area / PI * sum / f64::from(rays)
-    }
-
-    /// g of a pair of points, and g V.
-    #[inline(always)]
-    fn shadow_ray(&self, source: &Source, [a, b, c, d]: [f64; 4]) -> (f64, f64) {
-        let ((from, normal), (to, normal_there)) = (self.place(a, b), source.places.place(c, d));
-        let along = to - from;
-        let (cosine, cosine_there) = (normal.dot(along), -normal_there.dot(along));
-        if cosine <= 0.0 || cosine_there <= 0.0 {
-            return (0.0, 0.0);
-        }
-        let weight = cosine * cosine_there / along.length_squared().powi(2);
-        let is_blocked = self.scenery.is_between(&Ray { origin: from, direction: along });
-        (weight, if is_blocked { 0.0 } else { weight })
     }
 
     #[inline(always)]
     fn seed(&self, source: u32) -> u32 {
         sobol::hash(self.unknown as u32 ^ sobol::hash(source ^ 0x2545_f491))
+    }
+}
+
+/// A source from an unknown.
+struct Sight<'a> {
+    receiver: &'a Receiver<'a>,
+    candidate: &'a Candidate,
+    between: Between<Few<'a>>,
+}
+
+impl Sight<'_> {
+    /// The share of the light of a polygon that arrives, by so many rays at first and in all.
+    #[inline(always)]
+    fn visible(&self, [first, all]: [u32; 2]) -> f64 {
+        if matches!(&self.between, Between::Plates(few) if few.is_empty()) {
+            return 1.0;
+        }
+        let [sum, open] = self.shadow_rays(0..first);
+        let (mut agreed, mut weight_of_more) = (0.0, 1.0);
+        if sum > 0.0 && (open == 0.0 || open == sum) {
+            // What the first rays agree on, and how much a later disagreement counts.
+            agreed = open / sum;
+            if first >= all || !self.receiver.seed(self.candidate.number).is_multiple_of(GO_ON) {
+                return agreed;
+            }
+            weight_of_more = f64::from(GO_ON);
+        }
+        let [more, more_open] = self.shadow_rays(first..all);
+        let (sum, open) = (sum + more, open + more_open);
+        if sum > 0.0 { agreed + (open / sum - agreed) * weight_of_more } else { 0.0 }
+    }
+
+    /// The form factor of several polygons by so many rays.
+    #[inline(always)]
+    fn counted(&self, rays: u32) -> f64 {
+        let [_, open] = self.shadow_rays(0..rays);
+        self.candidate.source.area / PI * open / f64::from(rays)
+    }
+
+    /// The sums of g and of g V over these pairs of points.
+    #[inline(always)]
+    fn shadow_rays(&self, range: Range<u32>) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        let mut start = range.start;
+        while start < range.end {
+            let (from, to, weights) = self.pairs(start..range.end.min(start + LANES as u32));
+            let is_stopped = match &self.between {
+                Between::Plates(few) => stopped(few, &from, &to),
+                _ => self.stopped_by_any(&from, &to, &weights),
+            };
+            for k in 0..LANES {
+                sums[0] += weights[k];
+                sums[1] += if is_stopped[k] { 0.0 } else { weights[k] };
+            }
+            start += LANES as u32;
+        }
+        sums
+    }
+
+    /// Up to eight pairs of points, with g = cosθ cosθ' / d²; the others have none.
+    #[inline(always)]
+    fn pairs(&self, range: Range<u32>) -> (Eight, Eight, [f64; LANES]) {
+        let Self { receiver, candidate, .. } = self;
+        let seed = receiver.seed(candidate.number);
+        let (mut from, mut to, mut weights) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
+        for (k, number) in range.enumerate() {
+            let [a, b, c, d] = places(number, seed);
+            let ((p, normal), (q, normal_there)) =
+                (receiver.area.place(a, b), candidate.source.places.place(c, d));
+            let along = q - p;
+            let (cosine, cosine_there) = (normal.dot(along), -normal_there.dot(along));
+            if cosine > 0.0 && cosine_there > 0.0 {
+                weights[k] = cosine * cosine_there / along.length_squared().powi(2);
+            }
+            for axis in 0..3 {
+                (from[axis][k], to[axis][k]) = (p[axis], q[axis]);
+            }
+        }
+        (from, to, weights)
+    }
+
+    /// Which of these pairs anything in the scene stands between.
+    #[inline(always)]
+    fn stopped_by_any(&self, from: &Eight, to: &Eight, weights: &[f64; LANES]) -> [bool; LANES] {
+        let mut stopped = [false; LANES];
+        for k in 0..LANES {
+            if weights[k] > 0.0 {
+                let [origin, end] = [from, to].map(|[x, y, z]| DVec3::new(x[k], y[k], z[k]));
+                let ray = Ray { origin, direction: end - origin };
+                stopped[k] = self.receiver.scenery.is_blocked(self.receiver.instance, &ray);
+            }
+        }
+        stopped
     }
 }
 

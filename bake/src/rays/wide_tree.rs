@@ -109,6 +109,34 @@ impl WideTree {
         &self.leaves
     }
 
+    /// The leaves whose boxes meet `around`; none if there are more than `most`.
+    pub fn meeting(&self, around: &Aabb, most: usize) -> Option<Vec<usize>> {
+        // Rounding keeps the order of numbers, and boxes are rounded too.
+        let [low, high] = [around.low, around.high].map(|corner| (corner - self.centre).as_vec3());
+        let (mut found, mut open) = (vec![], vec![]);
+        open.extend((!self.nodes.is_empty()).then_some(0));
+        while let Some(number) = open.pop() {
+            let Node { sides: [lows, highs], children } = &self.nodes[number as usize];
+            let mut is_met = [true; LANES];
+            for axis in 0..3 {
+                for (k, is_met) in is_met.iter_mut().enumerate() {
+                    *is_met &= (lows[axis].0[k] <= high[axis]) & (highs[axis].0[k] >= low[axis]);
+                }
+            }
+            for child in Mask::of(is_met).map(|k| children[k].0) {
+                if child & Child::LEAF == 0 {
+                    open.push(child);
+                } else {
+                    found.push((child & !Child::LEAF) as usize);
+                }
+            }
+            if found.len() + open.len() > most {
+                return None;
+            }
+        }
+        Some(found)
+    }
+
     /// Visits the leaves whose boxes the ray meets with t up to `most`, roughly in order.
     #[inline(always)]
     pub fn along(&self, ray: &Ray, most: f64, visitor: &mut impl Visitor) {

@@ -224,7 +224,7 @@ fn parents(nodes: &[Sender]) -> Vec<u32> {
 }
 
 /// A mirrored placement reverses the order of the corners, so that they stay counter-clockwise from the front.
-fn place_element(element: &Element, placement: DAffine3, first_face: u32) -> Element {
+pub(crate) fn place_element(element: &Element, placement: DAffine3, first_face: u32) -> Element {
     if placement == DAffine3::IDENTITY {
         return Element { face: FaceId(element.face.0 + first_face), ..*element };
     }

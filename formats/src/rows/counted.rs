@@ -12,6 +12,9 @@ pub struct CountedRow {
     pub rays: u32,
 }
 
+/// In place of the number of a row's rays: the row is that of another block.
+const AS_BEFORE: u32 = u32::MAX;
+
 impl Rows {
     /// A block with `senders` columns from counted rows, receivers in order.
     pub fn from_counts(senders: usize, rows: impl IntoIterator<Item = CountedRow>) -> Self {
@@ -45,6 +48,27 @@ impl Rows {
         }
     }
 
+    /// What differs from another block of as many counted rows: these rows, and a mark in place of each equal one.
+    pub fn changes_from(&self, before: &Self) -> Self {
+        let row = |receiver| {
+            let row = self.counted_row(receiver);
+            let is_equal = row == before.counted_row(receiver);
+            if is_equal { CountedRow { counts: vec![], rays: AS_BEFORE } } else { row }
+        };
+        Self::from_counts(self.senders(), (0..self.receivers()).map(row))
+    }
+
+    /// `before` with these changes, as [`Self::changes_from`] finds them; none if there are no changes.
+    pub fn applied_to(&self, before: &Self) -> Option<Self> {
+        let Values::Counts { rays, .. } = &self.values else { panic!("rows are not counted") };
+        if rays.iter().all(|&rays| rays == AS_BEFORE) {
+            return None;
+        }
+        let from = |receiver: usize| if rays[receiver] == AS_BEFORE { before } else { self };
+        let rows = (0..self.receivers()).map(|receiver| from(receiver).counted_row(receiver));
+        Some(Self::from_counts(self.senders(), rows))
+    }
+
     /// The columns before `column`, and those from it on, as two blocks of counted rows. Panics if rows are not counted.
     pub fn parted(&self, column: usize) -> [Self; 2] {
         let rows: Vec<CountedRow> = (0..self.receivers()).map(|row| self.counted_row(row)).collect();
@@ -61,11 +85,26 @@ impl Rows {
 
 /// The irradiance of a counted row, W/m²: Σ_j k_ij B_j over the number of its rays.
 pub(super) fn counted(columns: &[u32], counts: &[u16], rays: u32, radiosity: &[Rgb]) -> Rgb {
-    let mut sum = [0.0; 3];
-    for (&column, &count) in columns.iter().zip(counts) {
-        let Rgb([r, g, b]) = radiosity[column as usize];
-        let count = f64::from(count);
-        sum = [sum[0] + count * r, sum[1] + count * g, sum[2] + count * b];
+    // Several sums at once, since each addition waits for the last of its sum.
+    let mut sums = [[0.0; 3]; SUMS];
+    let ((columns, last_columns), (counts, last_counts)) =
+        (columns.as_chunks::<SUMS>(), counts.as_chunks::<SUMS>());
+    for (columns, counts) in columns.iter().zip(counts) {
+        for k in 0..SUMS {
+            add(&mut sums[k], counts[k], radiosity[columns[k] as usize]);
+        }
     }
-    Rgb(sum) / f64::from(rays.max(1))
+    for (&column, &count) in last_columns.iter().zip(last_counts) {
+        add(&mut sums[0], count, radiosity[column as usize]);
+    }
+    let sum = sums.into_iter().fold(Rgb::BLACK, |all, sum| all + Rgb(sum));
+    sum / f64::from(rays.max(1))
+}
+
+/// Sums of a row at once.
+const SUMS: usize = 4;
+
+fn add(sum: &mut [f64; 3], count: u16, Rgb(radiosity): Rgb) {
+    let count = f64::from(count);
+    sum.iter_mut().zip(radiosity).for_each(|(sum, radiosity)| *sum += count * radiosity);
 }
