@@ -33,6 +33,8 @@ pub enum Kind {
     Light,
     /// A block of form factors between two instances.
     Coupling,
+    /// Form factors from an instance to sources of light.
+    Sources,
     /// Only a manifest: the latest inputs of a named result.
     Manifest,
     /// The light of a scene.
@@ -43,7 +45,8 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds.
-    pub(crate) const ALL: [Self; 5] = [Self::Part, Self::Light, Self::Coupling, Self::Manifest, Self::Alias];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Part, Self::Light, Self::Coupling, Self::Sources, Self::Manifest, Self::Alias];
 
     /// The four bytes in the header.
     fn code(self) -> [u8; 4] {
@@ -51,6 +54,7 @@ impl Kind {
             Self::Part => *b"PART",
             Self::Light => *b"LGHT",
             Self::Coupling => *b"COUP",
+            Self::Sources => *b"SRCS",
             Self::Manifest => *b"MANI",
             Self::Solution => *b"SOLN",
             Self::Alias => *b"ALIA",
@@ -63,6 +67,7 @@ impl Kind {
             Self::Part => "part",
             Self::Light => "light",
             Self::Coupling => "coupling",
+            Self::Sources => "sources",
             Self::Manifest => "manifest",
             Self::Solution => "solution",
             Self::Alias => "alias",

@@ -19,6 +19,11 @@ impl Digest {
     pub(crate) fn from_hex(text: &str) -> Option<Self> {
         blake3::Hash::from_hex(text).ok().map(|hash| Self(*hash.as_bytes()))
     }
+
+    /// The first 64 bits of it as a number.
+    pub fn first_bytes(&self) -> u64 {
+        u64::from_le_bytes(self.0[..8].try_into().expect("eight bytes"))
+    }
 }
 
 impl fmt::Display for Digest {

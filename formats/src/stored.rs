@@ -7,6 +7,7 @@ mod geometry;
 mod light;
 mod rows;
 mod solution;
+mod source_rows;
 
 use crate::container::{Kind, Number, Reader, Writer};
 use crate::error::Result;

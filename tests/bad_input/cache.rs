@@ -1,9 +1,9 @@
 //! A damaged cache costs time and a note, never a wrong answer.
 
-use equilux_formats::Rows;
 use equilux_formats::baked::{BakedGeometry, BakedLight};
 use equilux_formats::container::{Kind, Reader};
 use equilux_formats::stored::Stored;
+use equilux_formats::{Rows, SourceRows};
 use equilux_tests::rooms::furnished;
 use equilux_tests::workshop::Workshop;
 use serde_json::Value;
@@ -98,6 +98,7 @@ fn no_damage_to_any_file_of_a_real_cache_is_believed() {
             "part" => is_refused::<BakedGeometry>,
             "light" => is_refused::<BakedLight>,
             "coupling" => is_refused::<Rows>,
+            "sources" => is_refused::<SourceRows>,
             "manifest" => |path| Reader::open(path, Kind::Manifest).is_err(),
             kind => panic!("{name} is of no known kind: {kind}"),
         };
@@ -113,7 +114,7 @@ fn no_damage_to_any_file_of_a_real_cache_is_believed() {
             assert!(refused(&path), "{name} cut to {position} of {} bytes", whole.len());
         }
     }
-    assert_eq!(kinds.len(), 4, "kinds of files tried: {kinds:?}");
+    assert_eq!(kinds.len(), 5, "kinds of files tried: {kinds:?}");
 }
 
 /// A new file each time: some file systems wait for the disk when a file is cut and filled again.

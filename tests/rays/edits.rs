@@ -42,6 +42,7 @@ fn after_two_hundred_edits_every_count_is_that_from_nothing() {
     scene(&things).write(&file);
     equation(&file, &cache);
     let (mut traced_now, mut traced_fresh) = (0, 0);
+    let (mut aimed_now, mut aimed_fresh) = (0, 0);
     for number in 0..200 {
         let what = edit(&mut things, &mut dice, number);
         scene(&things).write(&file);
@@ -56,7 +57,14 @@ fn after_two_hundred_edits_every_count_is_that_from_nothing() {
         assert_eq!(now.direct.irradiance, fresh.direct.irradiance, "{what}: light of sources");
         traced_now += traced(&now);
         traced_fresh += traced(&fresh);
+        aimed_now += now.direct.computed;
+        aimed_fresh += fresh.direct.computed;
     }
     // In a room with four crates each edit concerns a good part of it.
     assert!(traced_now < traced_fresh / 2, "{traced_now} rays, {traced_fresh} from nothing");
+    // Boxes around a crate and what it lights fill much of a small room.
+    assert!(
+        aimed_now < aimed_fresh * 9 / 10,
+        "{aimed_now} form factors of sources, {aimed_fresh} from nothing"
+    );
 }

@@ -2,7 +2,7 @@
 //! stand in between. Whole numbers, the same as from nothing, also where an earlier block is brought up to date.
 
 use crate::equation::coupling::{Corrected, Coupled, Coupler};
-use crate::equation::earlier::EarlierScene;
+use crate::equation::earlier::{EarlierScene, Since};
 use crate::gather::sky::SkyCells;
 use crate::placed_parts::PlacedParts;
 use equilux_bake::oven::cached::{NewValue, Origin, cached_or_revised};
@@ -87,6 +87,12 @@ impl<'a> RayTracer<'a> {
     pub fn edit(&self) -> Option<Edit<'_>> {
         let (earlier, first) = self.earlier.as_ref()?;
         Some(Edit::new(side(&earlier.scenery, first), side(self.scenery, &self.first), &earlier.stays))
+    }
+
+    /// The same as light of sources has to know it. `edit`: of this tracer.
+    pub fn since<'b>(&'b self, edit: Option<&'b Edit>) -> Since<'b> {
+        let earlier = self.earlier.as_ref().zip(edit);
+        earlier.map_or(Since::default(), |((earlier, _), edit)| Since::new(earlier, edit.changed()))
     }
 }
 

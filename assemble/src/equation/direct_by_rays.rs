@@ -3,6 +3,8 @@
 
 use crate::equation::coupling::{Coupled, Coupler};
 use crate::equation::direct::{Direct, LampLight};
+use crate::equation::earlier::Since;
+use crate::equation::source_rows::FactorsOfSources;
 use crate::equation::sources::Sources;
 use crate::gather::lights::Lights;
 use crate::gather::outside::frame;
@@ -24,6 +26,8 @@ pub struct DirectByRays<'a> {
     pub scenery: &'a Scenery,
     /// The blocks of the instances.
     pub coupled: &'a [Coupled],
+    /// What changed since the last run.
+    pub since: Since<'a>,
     /// Optics of all elements.
     pub optics: &'a Optics,
 }
@@ -102,9 +106,11 @@ impl DirectByRays<'_> {
     fn add_light(&self, sources: &Sources, sent: &[Rgb], direct: &mut Direct) -> Result<Vec<f64>> {
         let placed = self.coupler.placed;
         let apart = placed.split(&sources.spread(sent));
+        let blocks = (self.scenery, self.coupled);
+        let factors = FactorsOfSources::new(self.coupler, blocks, self.since, sources);
         let mut seen = Vec::with_capacity(placed.world.elements.len());
         for (k, apart) in apart.iter().enumerate() {
-            let (rows, computed) = sources.rows(self.coupler, self.scenery, self.coupled, k)?;
+            let (rows, computed) = factors.rows(k)?;
             direct.computed += computed;
             let light = apply(&rows, sent);
             add(&mut direct.irradiance[k], &light);

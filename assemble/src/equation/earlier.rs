@@ -1,6 +1,7 @@
 //! The scene as the last run on its file left it in the cache, whose blocks of counted rays an edit brings up to date.
 
 use crate::equation::coupling::Coupler;
+use equilux_bake::geometry::aabb::Aabb;
 use equilux_bake::oven::placed_keys::PlacedKeys;
 use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::rays::surfaces::Surfaces;
@@ -64,6 +65,38 @@ impl EarlierScene {
     /// The number that a present instance had.
     pub fn number_of(&self, instance: usize) -> Option<usize> {
         self.stays.iter().position(|&stays| stays == Some(instance))
+    }
+}
+
+/// What changed since the last run, as far as is known.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Since<'a> {
+    /// The scene of the last run, if it was another.
+    earlier: Option<&'a EarlierScene>,
+    /// Boxes around what came or went, in scene coordinates.
+    changed: &'a [Aabb],
+}
+
+impl<'a> Since<'a> {
+    /// The change from an earlier scene, within these boxes.
+    pub fn new(earlier: &'a EarlierScene, changed: &'a [Aabb]) -> Self {
+        Self { earlier: Some(earlier), changed }
+    }
+
+    /// Boxes around what came or went, in scene coordinates.
+    pub fn changed(&self) -> &'a [Aabb] {
+        self.changed
+    }
+
+    /// The keys and the number that a present instance had; none if it was not there.
+    pub fn before<'b>(&self, coupler: &'b Coupler, instance: usize) -> Option<(&'b PlacedKeys, usize)>
+    where
+        'a: 'b,
+    {
+        match self.earlier {
+            None => Some((&coupler.keys, instance)),
+            Some(earlier) => Some((&earlier.keys, earlier.number_of(instance)?)),
+        }
     }
 }
 

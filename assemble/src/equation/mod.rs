@@ -12,6 +12,7 @@ pub mod intruders;
 pub mod observer;
 pub mod optics;
 pub mod reflected;
+mod source_rows;
 mod sources;
 mod stale_block;
 
@@ -79,9 +80,15 @@ impl Equation {
                 let edit = tracer.edit();
                 let coupled =
                     couple(&coupler, observer, |k| coupler.couple_by_rays(k, &tracer, edit.as_ref()))?;
-                earlier::remember(&coupler)?;
-                let by_rays = DirectByRays { coupler: &coupler, scenery, coupled: &coupled, optics: &optics };
+                let by_rays = DirectByRays {
+                    coupler: &coupler,
+                    scenery,
+                    coupled: &coupled,
+                    since: tracer.since(edit.as_ref()),
+                    optics: &optics,
+                };
                 let direct = by_rays.irradiance(&lights)?;
+                earlier::remember(&coupler)?;
                 (coupled, direct)
             }
         };

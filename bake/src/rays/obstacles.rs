@@ -13,7 +13,7 @@
 
 use super::hemisphere::Emitters;
 use super::plates::Plate;
-use super::scenery::Scenery;
+use super::scenery::{Scenery, moved};
 use crate::geometry::aabb::Aabb;
 use glam::DVec3;
 use smallvec::SmallVec;
@@ -60,6 +60,12 @@ impl Hull {
         let corner = |k: usize| corners[k.min(corners.len() - 1)];
         let corners = std::array::from_fn(|axis| std::array::from_fn(|k| corner(k)[axis]));
         Self { corners, bounds, plane }
+    }
+
+    /// The box in the scene around it and another body, both in the coordinates of an instance. No instance whose box does not meet
+    /// that one bears on what stands between them.
+    pub fn around_both(&self, other: &Self, scenery: &Scenery, instance: usize) -> Aabb {
+        moved(self.bounds.union(other.bounds), &scenery.placement_of(instance))
     }
 
     /// Whether any of `other` may be before its plane.

@@ -67,6 +67,11 @@ impl<'a> Edit<'a> {
         Self { before, after, changed, column_after }
     }
 
+    /// Boxes around what came or went, in scene coordinates.
+    pub fn changed(&self) -> &[Aabb] {
+        &self.changed
+    }
+
     /// The rows after the edit of an instance of these numbers before and after; none if they are those before it. Fails if
     /// the monitor was stopped.
     pub fn recounted(

@@ -15,8 +15,10 @@ use super::scenery::Scenery;
 use super::sobol;
 use super::wide_tree::Ray;
 use crate::form_factor::contour::form_factor;
+use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Clipped, clip, distance};
 use crate::world::place_element;
+use equilux_formats::fingerprint::Content;
 use equilux_formats::{Element, Rgb};
 use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
@@ -63,17 +65,37 @@ pub struct Source {
     elements: Vec<Element>,
     places: Emitters,
     area: f64,
+    /// Follows from the elements and their places alone.
+    identity: u64,
 }
 
 impl Source {
     /// The surface of these elements, in scene coordinates.
     pub fn new(elements: Vec<Element>) -> Self {
+        let corners = elements.iter().flat_map(|element| element.corners.as_slice());
+        let numbers: Vec<f64> = corners.flat_map(|corner| corner.to_array()).collect();
+        let identity = Content::new().f64s(&numbers).digest().first_bytes();
+        Self::with_identity(elements, identity)
+    }
+
+    fn with_identity(elements: Vec<Element>, identity: u64) -> Self {
         let (places, area) = (Emitters::new(&elements), elements.iter().map(|element| element.area).sum());
-        Self { elements, places, area }
+        Self { elements, places, area, identity }
+    }
+
+    /// A number that follows from its form and place.
+    pub fn identity(&self) -> u64 {
+        self.identity
+    }
+
+    /// The same as the next of several sources at one place.
+    pub fn next_twin(self) -> Self {
+        Self { identity: Content::new().bytes(self.identity.to_le_bytes()).digest().first_bytes(), ..self }
     }
 
     fn moved(&self, by: DAffine3) -> Self {
-        Self::new(self.elements.iter().map(|element| place_element(element, by, 0)).collect())
+        let elements = self.elements.iter().map(|element| place_element(element, by, 0)).collect();
+        Self::with_identity(elements, self.identity)
     }
 
     /// The polygon, unless there are several.
@@ -93,6 +115,25 @@ pub fn form_factors(
 ) -> Vec<Vec<(u32, f64)>> {
     // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
     pulp::Arch::new().dispatch(Neighbours { scenery, instance, unknowns, sources, effort })
+}
+
+/// Whether anything within these boxes, in scene coordinates, may bear on the form factors from some neighbouring unknowns of an
+/// instance to `sources`.
+pub fn bear_on(
+    boxes: &[Aabb],
+    scenery: &Scenery,
+    instance: usize,
+    unknowns: Range<usize>,
+    sources: &[(u32, &Source)],
+) -> bool {
+    let here = Hull::around(unknowns.map(|unknown| scenery.surfaces_of(instance).emitters(unknown)));
+    let to_here = scenery.placement_of(instance).inverse();
+    let is_reached = |&(_, source): &(u32, &Source)| {
+        let there = Hull::around(std::iter::once(&source.moved(to_here).places));
+        let reached = here.around_both(&there, scenery, instance);
+        boxes.iter().any(|bounds| bounds.meets(&reached))
+    };
+    !boxes.is_empty() && sources.iter().any(is_reached)
 }
 
 /// The mean of `light` over so many places on an unknown of an instance: of a place and its normal, in scene coordinates.
@@ -247,9 +288,10 @@ impl<'a> Receiver<'a> {
         source.area / (source.area + PI * apart)
     }
 
+    /// A number for the rays to a source of this identity.
     #[inline(always)]
-    fn seed(&self, source: u32) -> u32 {
-        sobol::hash(self.unknown as u32 ^ sobol::hash(source ^ 0x2545_f491))
+    fn seed(&self, source: u64) -> u32 {
+        sobol::hash(self.unknown as u32 ^ sobol::hash(source as u32 ^ 0x2545_f491))
     }
 }
 
@@ -272,7 +314,7 @@ impl Sight<'_> {
         if sum > 0.0 && (open == 0.0 || open == sum) {
             // What the first rays agree on, and how much a later disagreement counts.
             agreed = open / sum;
-            if first >= all || !self.receiver.seed(self.candidate.number).is_multiple_of(GO_ON) {
+            if first >= all || !self.receiver.seed(self.candidate.source.identity).is_multiple_of(GO_ON) {
                 return agreed;
             }
             weight_of_more = f64::from(GO_ON);
@@ -313,7 +355,7 @@ impl Sight<'_> {
     #[inline(always)]
     fn pairs(&self, range: Range<u32>) -> (Eight, Eight, [f64; LANES]) {
         let Self { receiver, candidate, .. } = self;
-        let seed = receiver.seed(candidate.number);
+        let seed = receiver.seed(candidate.source.identity);
         let (mut from, mut to, mut weights) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3], [0.0; LANES]);
         for (k, number) in range.enumerate() {
             let [a, b, c, d] = places(number, seed);
