@@ -12,12 +12,12 @@ use equilux_formats::rows::{Precision, RowGroup};
 use equilux_formats::store::Lookup;
 use equilux_formats::{Error, Result, Rows, SourceRows};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::ops::Range;
 use std::sync::OnceLock;
 
 /// Unknowns that share a list of the sources whose light they get by form factors: those that have a ray that ends on one of
-/// them. The rays of a source say nothing about those of a receiver, so light of all others, which receivers get along their
+/// them, with all of their body, since the narrow sides of a lamp have few. The rays of a source say nothing about those of a receiver, so light of all others, which receivers get along their
 /// rows, is neither lost nor counted twice.
 const NEIGHBOURS: usize = 512;
 
@@ -194,33 +194,36 @@ impl<'a> FactorsOfSources<'a> {
         single(self.sources.sources.len(), rows)
     }
 
-    /// For each instance, for each of its runs of [`NEIGHBOURS`] unknowns, the sources that have a ray that ends on one of them.
+    /// For each instance, for each of its runs of [`NEIGHBOURS`] unknowns, the sources that have a ray that ends on one of them, and
+    /// those of their bodies.
     fn near(&self) -> Vec<Vec<Near>> {
         let placed = self.coupler.placed;
         let blocks = Blocks { coupler: self.coupler, coupled: self.coupled };
         let runs = |k: usize| vec![vec![]; placed.unknowns_of(k).div_ceil(NEIGHBOURS)];
-        let mut near: Vec<Vec<Near>> = (0..placed.instances.len()).map(runs).collect();
+        let mut met: Vec<Vec<Vec<u32>>> = (0..placed.instances.len()).map(runs).collect();
         for instance in 0..placed.instances.len() {
             let first = placed.columns_of(instance).start;
             for unknown in 0..placed.unknowns_of(instance) {
                 for &source in &self.sources.on_column[first + unknown] {
-                    let named = (self.sources.sources[source as usize].identity(), source);
                     for (column, _) in blocks.row(instance, unknown) {
-                        let met = placed.instance_of_column(column);
-                        let run = (column - placed.columns_of(met).start) / NEIGHBOURS;
-                        let known: &mut Near = &mut near[met][run];
-                        if known.last() != Some(&named) {
-                            known.push(named);
+                        let other = placed.instance_of_column(column);
+                        let run = (column - placed.columns_of(other).start) / NEIGHBOURS;
+                        let met: &mut Vec<u32> = &mut met[other][run];
+                        if met.last() != Some(&source) {
+                            met.push(source);
                         }
                     }
                 }
             }
         }
-        for known in near.iter_mut().flatten() {
-            known.sort_unstable();
-            known.dedup();
-        }
-        near
+        let Sources { sources, body_of, .. } = self.sources;
+        let with_bodies = |met: Vec<u32>| -> Near {
+            let met: BTreeSet<u32> = met.into_iter().collect();
+            let bodies = met.iter().flat_map(|&source| &body_of[source as usize]);
+            let named = bodies.map(|&source| (sources[source as usize].identity(), source));
+            named.collect::<BTreeSet<_>>().into_iter().collect()
+        };
+        met.into_iter().map(|runs| runs.into_iter().map(with_bodies).collect()).collect()
     }
 }
 

@@ -6,10 +6,11 @@
 
 use crate::gather::glowing::{EmittingSurfaces, surfaces};
 use crate::placed_parts::PlacedParts;
+use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_bake::oven::placed_keys::{SECONDARY_SOURCES, SOURCES};
 use equilux_bake::rays::sources::{Effort, Source};
 use equilux_formats::{Element, Rgb};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Above this share of the scene's area, emitting surfaces are no sources: nearly everything emits, and rows of counted
 /// rays carry it better.
@@ -24,6 +25,9 @@ const MOST_SECONDARY: f64 = 0.02;
 /// or this many in a small scene.
 const FEW_SECONDARY: f64 = 64.0;
 
+/// The most sources that are one body.
+const MOST_OF_BODY: usize = 16;
+
 /// Sources of a scene.
 #[derive(Debug)]
 pub struct Sources {
@@ -35,6 +39,8 @@ pub struct Sources {
     pub of_element: Vec<u32>,
     /// The sources on each column of the scene's blocks.
     pub on_column: Vec<Vec<u32>>,
+    /// For each source those of its body.
+    pub body_of: Vec<Vec<u32>>,
     /// The kind of the blocks of form factors to them.
     pub what: &'static str,
     /// The number of shadow rays.
@@ -51,7 +57,8 @@ impl Sources {
             pairs.map(|(element, _)| element.area).sum()
         };
         let few = area(true) <= MOST_EMITTING * area(false);
-        Self::of(placed, emission, SOURCES, Effort::DIRECT).filter(|_| few)
+        let sources = Self::of(placed, emission, SOURCES, Effort::DIRECT).filter(|_| few)?;
+        Some(Self { body_of: bodies(&sources.sources), ..sources })
     }
 
     /// The places that see much of the sources; none if there are none. `seen`: the sum of the form factors of sources of all
@@ -101,7 +108,8 @@ impl Sources {
         }
         let sources = told_apart(sources);
         let on_column = on_columns(placed, &of_element);
-        (!sources.is_empty()).then_some(Self { sources, sent, of_element, on_column, what, effort })
+        let body_of = (0..sources.len() as u32).map(|source| vec![source]).collect();
+        (!sources.is_empty()).then_some(Self { sources, sent, of_element, on_column, body_of, what, effort })
     }
 
     /// What emitting sources send, W/m².
@@ -139,6 +147,25 @@ fn brightest(values: &[f64], least: f64, most: usize) -> f64 {
 fn in_steps(number: f64, round: fn(f64) -> f64) -> f64 {
     const STEPS: f64 = 8.0;
     (round(number.log2() * STEPS) / STEPS).exp2()
+}
+
+/// For each source those that are joined to it by common corners, such as the sides of a lamp; itself alone if they are many.
+fn bodies(sources: &[Source]) -> Vec<Vec<u32>> {
+    let (mut sets, mut at) = (DisjointSets::new(sources.len()), HashMap::new());
+    for (number, source) in sources.iter().enumerate() {
+        for corner in source.corners() {
+            let corner = (corner + 0.0).to_array().map(f64::to_bits);
+            sets.join(number, *at.entry(corner).or_insert(number));
+        }
+    }
+    let mut body_of = vec![vec![]; sources.len()];
+    for set in sets.into_sets() {
+        let all: Vec<u32> = set.iter().map(|&source| source as u32).collect();
+        for &source in &set {
+            body_of[source] = if set.len() <= MOST_OF_BODY { all.clone() } else { vec![source as u32] };
+        }
+    }
+    body_of
 }
 
 /// Each with an identity of its own, also where several are at one place.

@@ -83,6 +83,11 @@ impl Source {
         Self { elements, places, area, identity }
     }
 
+    /// Its corners.
+    pub fn corners(&self) -> impl Iterator<Item = DVec3> + '_ {
+        self.elements.iter().flat_map(|element| element.corners.as_slice()).copied()
+    }
+
     /// A number that follows from its form and place.
     pub fn identity(&self) -> u64 {
         self.identity
