@@ -144,8 +144,7 @@ fn ranges(lengths: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
 }
 
 fn scenery(parts: &[Baked], instances: &[Instance]) -> Scenery {
-    let surfaces = |baked: &Baked| Arc::new(Surfaces::new(&baked.part.geometry));
-    let surfaces: Vec<Arc<Surfaces>> = parts.par_iter().map(surfaces).collect();
+    let surfaces: Vec<Arc<Surfaces>> = parts.par_iter().map(Baked::surfaces).collect();
     Scenery::new(instances.iter().map(|i| (surfaces[i.part.index()].clone(), i.placement)))
 }
 

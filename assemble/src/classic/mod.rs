@@ -30,6 +30,7 @@ use equilux_formats::{BakedPart, Error, LightUnits, Optics, Result, Rgb, Rows, S
 use glam::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// The method of solution.
@@ -219,6 +220,7 @@ fn without_light(part: PreparedPart) -> Baked {
         answers: BoundaryResponses::default(),
     };
     Baked {
+        surfaces: OnceLock::new(),
         part: BakedPart {
             self_block: Rows::from_rows(part.geometry.clusters.nodes(), vec![vec![]; receivers]),
             escapes: Escapes::default(),

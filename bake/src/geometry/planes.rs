@@ -17,23 +17,46 @@ pub fn group(faces: &[Face]) -> Vec<u32> {
     order.sort_by(|&a, &b| sizes[b].total_cmp(&sizes[a]).then(a.cmp(&b)));
 
     let mut planes: Vec<usize> = Vec::new();
-    let mut cells: HashMap<[i32; 3], Vec<u32>> = HashMap::new();
+    let mut cells: HashMap<[i32; 3], Vec<Plane>> = HashMap::new();
     let mut of_face = vec![0; faces.len()];
     for index in order {
         let face = &faces[index];
         let axis = axis(face.normal);
-        let known = neighbours(axis).filter_map(|cell| cells.get(&cell)).flatten().copied().find(|&plane| {
-            let plane = planes[plane as usize];
+        let near = neighbours(axis).filter_map(|cell| cells.get(&cell)).flatten();
+        let known = near.filter(|plane| plane.may_hold(face.corners[0], tolerances[index])).find(|plane| {
+            let plane = planes[plane.number as usize];
             lies_in(face, &faces[plane], tolerances[index].max(tolerances[plane]))
         });
-        of_face[index] = known.unwrap_or_else(|| {
+        of_face[index] = known.map(|plane| plane.number).unwrap_or_else(|| {
             planes.push(index);
-            let plane = planes.len() as u32 - 1;
-            cells.entry(cell(axis)).or_default().push(plane);
-            plane
+            let number = planes.len() as u32 - 1;
+            let offset = face.normal.dot(face.corners[0]);
+            let tolerance = tolerances[index];
+            cells.entry(cell(axis)).or_default().push(Plane {
+                normal: face.normal,
+                offset,
+                tolerance,
+                number,
+            });
+            number
         });
     }
     of_face
+}
+
+/// A plane, beside others of its cell in memory: most are ruled out by one corner.
+struct Plane {
+    normal: DVec3,
+    offset: f64,
+    tolerance: f64,
+    number: u32,
+}
+
+impl Plane {
+    /// Whether a face with this corner and tolerance can lie in it. Rounding is far below the tolerances.
+    fn may_hold(&self, corner: DVec3, tolerance: f64) -> bool {
+        (self.normal.dot(corner) - self.offset).abs() <= 2.0 * self.tolerance.max(tolerance)
+    }
 }
 
 /// The distance from a plane, in the unit of these points, up to which a point counts as in it.

@@ -28,6 +28,7 @@ use glam::DAffine3;
 use prepare::PreparedPart;
 use rayon::prelude::*;
 use std::path::Path;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
@@ -38,6 +39,8 @@ pub const KERNEL_VERSION: u32 = 9;
 pub struct Baked {
     /// The part.
     pub part: BakedPart,
+    /// Its surfaces for rays, made where they are first needed.
+    pub surfaces: OnceLock<Arc<Surfaces>>,
     /// Key of its geometry and form factors.
     pub key: Key,
     /// Where its form factors came from.
@@ -48,6 +51,13 @@ pub struct Baked {
     pub form_factor_time: Duration,
     /// Time spent on the local equilibrium.
     pub light_time: Duration,
+}
+
+impl Baked {
+    /// Its surfaces for rays.
+    pub fn surfaces(&self) -> Arc<Surfaces> {
+        self.surfaces.get_or_init(|| Arc::new(Surfaces::new(&self.part.geometry))).clone()
+    }
 }
 
 /// The settings and services for baking parts.
@@ -81,10 +91,11 @@ impl Oven<'_> {
         let manifest = geometry_manifest(part, self.resolution);
         let key = manifest.key();
         let (mut form_factor_time, receivers) = (Duration::ZERO, part.geometry.unknowns().elements());
+        let surfaces = OnceLock::new();
         let found = cached(self.store, &self.name(part, "form factors"), &manifest, self.monitor, || {
             self.monitor.begin(format!("form factors of {}", part.name), receivers, receivers as f64);
             let (self_block, escapes);
-            (self_block, escapes, form_factor_time) = self.rows_alone(&part.geometry)?;
+            (self_block, escapes, form_factor_time) = self.rows_alone(&part.geometry, &surfaces)?;
             Ok(BakedGeometry { geometry: without_materials(&part.geometry), self_block, escapes })
         });
         let (geometry, form_factors) = found?;
@@ -114,15 +125,21 @@ impl Oven<'_> {
             local,
         };
         let light_time = start.elapsed();
-        Ok(Baked { part, key, form_factors, light: light_origin, form_factor_time, light_time })
+        Ok(Baked { part, surfaces, key, form_factors, light: light_origin, form_factor_time, light_time })
     }
 
-    /// The rows of a part alone, what their rays may still meet, and the time that they took, summed over threads.
-    fn rows_alone(&self, geometry: &Geometry) -> Result<(Rows, Escapes, Duration)> {
+    /// The rows of a part alone, what their rays may still meet, and the time that they took, summed over threads. By rays also
+    /// its surfaces.
+    fn rows_alone(
+        &self,
+        geometry: &Geometry,
+        surfaces: &OnceLock<Arc<Surfaces>>,
+    ) -> Result<(Rows, Escapes, Duration)> {
         if let Some(patches) = &geometry.patches {
             let start = Instant::now();
+            let surfaces = surfaces.get_or_init(|| Arc::new(Surfaces::new(geometry)));
             let AloneRows { self_block, escapes } =
-                alone(&Surfaces::new(geometry), &Samples::new(patches.rays), self.monitor)?;
+                alone(surfaces, &Samples::new(patches.rays), self.monitor)?;
             return Ok((self_block, escapes, start.elapsed() * rayon::current_num_threads() as u32));
         }
         let world = World::new([(geometry, DAffine3::IDENTITY)]);
