@@ -3,6 +3,7 @@
 use super::solved;
 use equilux_assemble::proof::noise::noise;
 use equilux_assemble::solve::Solved;
+use equilux_bake::equilibrium::apply;
 use equilux_formats::{Corners, LightKind, LightUnits, MaterialId, Part, PunctualLight, Rgb, Surface};
 use equilux_tests::curved::{sphere, torus};
 use equilux_tests::levels::furnished;
@@ -47,6 +48,22 @@ fn a_furnace_has_one_radiosity() {
     let worst = seen.map(|(_, b)| (b[0] - 4.0).abs()).fold(0.0, f64::max);
     // The exchange is proved to a millionth of the brightest.
     assert!(worst <= 4e-6, "{worst} off 4 W/m²");
+}
+
+/// The rows themselves leave nothing of E − (I − ρF) B for B = E/(1 − ρ): sums of whole numbers, and some roundings of 4 W/m².
+#[test]
+fn a_furnace_solves_the_equation_to_rounding() {
+    let solved = solved(&scene_of(room_with_meshes(0.75, 1.0)), 0.25, 64);
+    let columns = vec![Rgb([4.0; 3]); solved.equation.placed.columns()];
+    for system in solved.equation.systems() {
+        let own = &columns[..system.self_block.senders()];
+        let arriving = apply(system.self_block, own).into_iter().zip(apply(system.coupling, &columns));
+        let sums = (0..).map(|k| system.self_block.row_sum(k) + system.coupling.row_sum(k));
+        for (residual, sum) in arriving.map(|(own, others)| 1.0 + 0.75 * (own + others)[0] - 4.0).zip(sums) {
+            // An element that a crate covers whole has no rays.
+            assert!(sum == 0.0 || residual.abs() <= 1e-12, "{residual} W/m² with a row sum of {sum}");
+        }
+    }
 }
 
 /// Small triangles become patches of about the size of elements: their number does not follow the mesh.
