@@ -10,6 +10,7 @@ use crate::gather::lights::Lights;
 use crate::gather::outside::frame;
 use crate::gather::sky::SkyCells;
 use equilux_bake::equilibrium::apply;
+use equilux_bake::oven::own_order::in_own_order;
 use equilux_bake::rays::Ray;
 use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::rays::sources::{Effort, Source, form_factors, mean_over};
@@ -108,16 +109,18 @@ impl DirectByRays<'_> {
         let apart = placed.split(&sources.spread(sent));
         let blocks = (self.scenery, self.coupled);
         let factors = FactorsOfSources::new(self.coupler, blocks, self.since, sources);
-        let mut seen = Vec::with_capacity(placed.world.elements.len());
-        for (k, apart) in apart.iter().enumerate() {
+        let light = |k: usize| -> Result<(Vec<Rgb>, Vec<f64>, usize)> {
             let (rows, computed) = factors.rows(k)?;
+            let sums = (0..rows.receivers()).map(|unknown| rows.row_sum(unknown)).collect();
+            Ok((apply(&rows, sent), sums, computed))
+        };
+        let mut seen = Vec::with_capacity(placed.world.elements.len());
+        for (k, (light, sums, computed)) in in_own_order(apart.len(), light)?.into_iter().enumerate() {
             direct.computed += computed;
-            let light = apply(&rows, sent);
             add(&mut direct.irradiance[k], &light);
             add(&mut direct.from_apart[k], &light);
-            add(&mut direct.apart[k], &placed.means_of_unknowns(k, apart));
-            let elements = 0..apart.len();
-            seen.extend(elements.map(|element| rows.row_sum(placed.unknown_of(k, element))));
+            add(&mut direct.apart[k], &placed.means_of_unknowns(k, &apart[k]));
+            seen.extend((0..apart[k].len()).map(|element| sums[placed.unknown_of(k, element)]));
         }
         Ok(seen)
     }

@@ -22,6 +22,8 @@ pub struct EarlierScene {
     pub scenery: Scenery,
     /// For each of its instances the present one with the same part and placement; numbers rise.
     pub stays: Vec<Option<usize>>,
+    /// For each present instance its number here.
+    numbers: Vec<Option<usize>>,
 }
 
 /// Above this share of instances that came or went, rows from nothing cost no more.
@@ -59,12 +61,18 @@ impl EarlierScene {
         }
         let placed = keys.instances.iter().enumerate();
         let placed = placed.map(|(k, instance)| (known[&keys.part_of(k).key].clone(), instance.placement));
-        Some(Self { scenery: Scenery::new(placed), keys, stays })
+        let mut numbers = vec![None; coupler.keys.instances.len()];
+        stays.iter().enumerate().for_each(|(number, stays)| {
+            if let Some(now) = *stays {
+                numbers[now] = Some(number);
+            }
+        });
+        Some(Self { scenery: Scenery::new(placed), keys, stays, numbers })
     }
 
     /// The number that a present instance had.
     pub fn number_of(&self, instance: usize) -> Option<usize> {
-        self.stays.iter().position(|&stays| stays == Some(instance))
+        self.numbers[instance]
     }
 }
 

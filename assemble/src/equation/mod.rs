@@ -30,8 +30,9 @@ use crate::gather::lights::Lights;
 use crate::gather::outside::lights;
 use crate::placed_parts::PlacedParts;
 use equilux_bake::equilibrium::LocalSystem;
+use equilux_bake::oven::Oven;
+use equilux_bake::oven::own_order::in_own_order;
 use equilux_bake::oven::prepare::Prepared;
-use equilux_bake::oven::{Baked, Oven};
 use equilux_bake::treecode::Resolution;
 use equilux_formats::{Optics, Result, Rgb, Scene};
 
@@ -173,12 +174,12 @@ fn expected_rows(prepared: &Prepared, environment: &Environment) -> f64 {
 
 fn bake_parts(oven: &Oven, prepared: Prepared, observer: &dyn Observer) -> Result<PlacedParts> {
     oven.read_ahead(&prepared.parts);
-    let mut parts: Vec<Baked> = Vec::new();
-    for (number, part) in prepared.parts.iter().enumerate() {
-        let baked = oven.bake(part)?;
+    let bake = |number: usize| {
+        let baked = oven.bake(&prepared.parts[number])?;
         observer.baked(number, &baked);
-        parts.push(baked);
-    }
+        Ok(baked)
+    };
+    let parts = in_own_order(prepared.parts.len(), bake)?;
     Ok(PlacedParts::new(parts, prepared.instances))
 }
 
@@ -196,5 +197,11 @@ fn couple(
         }
         Ok(coupled)
     };
-    (0..coupler.placed.instances.len()).map(couple).collect()
+    let count = coupler.placed.instances.len();
+    // Exact blocks are made from those of alike instances before them.
+    if coupler.resolution.rays.is_some() {
+        in_own_order(count, couple)
+    } else {
+        (0..count).map(couple).collect()
+    }
 }

@@ -7,7 +7,7 @@ use crate::equation::sources::Sources;
 use equilux_bake::oven::cached::{NewValue, cached_or_revised};
 use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::rays::sources::{Source, bear_on, form_factors};
-use equilux_formats::fingerprint::{Content, Key};
+use equilux_formats::fingerprint::{Content, Digest, Key};
 use equilux_formats::rows::{Precision, RowGroup};
 use equilux_formats::store::Lookup;
 use equilux_formats::{Error, Result, Rows, SourceRows};
@@ -37,6 +37,8 @@ pub struct FactorsOfSources<'a> {
     coupled: &'a [Coupled],
     since: Since<'a>,
     sources: &'a Sources,
+    /// Which elements are which source.
+    which: Digest,
     /// The number of the source of each identity.
     numbers: HashMap<u64, u32>,
     /// For each instance, for each run of its unknowns, the sources near it.
@@ -53,15 +55,15 @@ impl<'a> FactorsOfSources<'a> {
     ) -> Self {
         let numbered = sources.sources.iter().zip(0..);
         let numbers = numbered.map(|(source, number)| (source.identity(), number)).collect();
-        Self { coupler, scenery, coupled, since, sources, numbers, near: OnceLock::new() }
+        let which: Vec<u8> = sources.of_element.iter().flat_map(|source| source.to_le_bytes()).collect();
+        let which = Content::new().bytes(which).digest();
+        Self { coupler, scenery, coupled, since, sources, which, numbers, near: OnceLock::new() }
     }
 
     /// F^a of an instance, `unknowns × sources`, and the number of form factors computed. Fails if the monitor was stopped.
     pub fn rows(&self, instance: usize) -> Result<(Rows, usize)> {
         let coupler = self.coupler;
-        let which: Vec<u8> = self.sources.of_element.iter().flat_map(|source| source.to_le_bytes()).collect();
-        let manifest = coupler.manifest(instance, self.sources.what);
-        let manifest = manifest.digest("sources", Content::new().bytes(which).digest());
+        let manifest = coupler.manifest(instance, self.sources.what).digest("sources", self.which);
         let name = coupler.name(instance, self.sources.what);
         let mut computed = 0;
         let (found, _) = cached_or_revised(coupler.store, &name, &manifest, coupler.monitor, || {

@@ -4,6 +4,7 @@ pub mod batch;
 pub mod cached;
 pub mod depfile;
 pub mod keys;
+pub mod own_order;
 pub mod placed_keys;
 pub mod prepare;
 pub mod stamp;

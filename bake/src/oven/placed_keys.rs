@@ -6,6 +6,7 @@ use crate::treecode::Resolution;
 use equilux_formats::fingerprint::{Key, Manifest};
 use equilux_formats::{Instance, PartId};
 use glam::DAffine3;
+use std::collections::HashMap;
 use std::path::Path;
 use std::str::Split;
 
@@ -81,6 +82,8 @@ pub struct PlacedKeys {
     pub instances: Vec<Instance>,
     /// The baked parts, by number.
     pub parts: Vec<BakedKey>,
+    /// For each instance the number of those before it that have its name.
+    twins: Vec<usize>,
     resolution: Resolution,
     /// All of these, if rows are counted rays. A ray may meet any instance, so every block depends on all; and what it meets is
     /// one or the other to the bit, so that placements count to the bit.
@@ -101,7 +104,7 @@ impl PlacedKeys {
                 manifest.detail(format!("instance {number} ({})", instance.name), placed)
             })
         });
-        Self { instances, parts, resolution, scene }
+        Self { twins: twins(&instances), instances, parts, resolution, scene }
     }
 
     /// The scene that a manifest like [`PlacedKeys::scene`] describes; none if it is of another kind, or was made with other
@@ -121,7 +124,8 @@ impl PlacedKeys {
             }
             instances.push(Instance { name, part: id, placement, emission_scale: 1.0, repainted: vec![] });
         }
-        Some(Self { instances, parts, resolution: self.resolution, scene: Some(manifest.clone()) })
+        let (twins, scene) = (twins(&instances), Some(manifest.clone()));
+        Some(Self { instances, parts, twins, resolution: self.resolution, scene })
     }
 
     /// The inputs of a block of an instance: its part, and the part and placement of every other instance, relative to the
@@ -149,8 +153,7 @@ impl PlacedKeys {
 
     /// The name of a block of an instance in the cache, for a scene that is read from `file`.
     pub fn name(&self, file: &Path, instance: usize, what: &str) -> String {
-        let name = &self.instances[instance].name;
-        let twins = self.instances[..instance].iter().filter(|other| other.name == *name).count();
+        let (name, twins) = (&self.instances[instance].name, self.twins[instance]);
         format!("{what} of {name} #{twins} in {}", file.display())
     }
 
@@ -165,6 +168,17 @@ impl PlacedKeys {
     pub fn part_of(&self, instance: usize) -> BakedKey {
         self.parts[self.instances[instance].part.index()]
     }
+}
+
+/// For each instance the number of those before it that have its name.
+fn twins(instances: &[Instance]) -> Vec<usize> {
+    let mut known: HashMap<&str, usize> = HashMap::new();
+    let mut number = |name| {
+        let count = known.entry(name).or_default();
+        *count += 1;
+        *count - 1
+    };
+    instances.iter().map(|instance| number(instance.name.as_str())).collect()
 }
 
 /// A part and its placement in the scene, to the bit.
