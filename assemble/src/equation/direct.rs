@@ -22,6 +22,8 @@ pub struct Direct {
     pub apart: Vec<Vec<Rgb>>,
     /// The part of D that comes from it, W/m²; likewise.
     pub from_apart: Vec<Vec<Rgb>>,
+    /// The part of D whose shadows are sharp: of emitting surfaces, lamps and suns, W/m²; likewise. Only where rows are by rays.
+    pub sharp: Vec<Vec<Rgb>>,
     /// Form factors computed for the sky.
     pub computed: usize,
     /// The names of the lamps and suns that light no element.
@@ -51,7 +53,7 @@ pub fn direct(coupler: &Coupler, lights: &Lights) -> Result<Direct> {
             own.iter_mut().zip(apply(&rows, &seen)).for_each(|(sum, h)| *sum += h);
         }
     }
-    Ok(Direct { irradiance, from_apart: apart.clone(), apart, computed, unlit })
+    Ok(Direct { irradiance, from_apart: apart.clone(), apart, sharp: vec![], computed, unlit })
 }
 
 /// Light that arrives from lamps and suns.

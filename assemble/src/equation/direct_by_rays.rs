@@ -48,6 +48,7 @@ impl DirectByRays<'_> {
             irradiance: self.uncovered(&irradiance),
             apart: self.dark(),
             from_apart: self.dark(),
+            sharp: self.uncovered(&irradiance),
             computed: 0,
             unlit,
         };
@@ -55,6 +56,8 @@ impl DirectByRays<'_> {
         if let Some(sources) = Sources::emitting(placed, &self.optics.emission) {
             self.coupler.monitor.begin("light of sources", 0, 0.0);
             let seen = self.add_light(&sources, sources.emission(), &mut direct)?;
+            let Direct { sharp, from_apart, .. } = &mut direct;
+            sharp.iter_mut().zip(from_apart).for_each(|(sharp, light)| add(sharp, light));
             if let Some(secondary) = Sources::secondary(placed, &seen) {
                 self.coupler.monitor.begin("light of secondary sources", 0, 0.0);
                 let sent = secondary.means(placed, &self.first_bounce(&direct.from_apart));

@@ -7,13 +7,14 @@ pub mod direct;
 mod direct_by_rays;
 mod earlier;
 pub mod environment;
+pub mod facing;
 pub mod interpenetration;
 pub mod intruders;
 pub mod observer;
 pub mod optics;
 pub mod reflected;
 mod source_rows;
-mod sources;
+pub mod sources;
 mod stale_block;
 
 use crate::equation::counted::RayTracer;
@@ -100,6 +101,11 @@ impl Equation {
         };
         let driven = (0..placed.instances.len()).map(driven).collect();
         Ok(Self { optics, placed, coupled, lights, direct, driven, resolution: oven.resolution })
+    }
+
+    /// Accuracy and storage of form factors.
+    pub fn resolution(&self) -> Resolution {
+        self.resolution
     }
 
     /// Rays a row, if rows are counted rays.

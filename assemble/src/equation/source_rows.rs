@@ -3,23 +3,19 @@
 
 use crate::equation::coupling::{Coupled, Coupler};
 use crate::equation::earlier::Since;
+use crate::equation::facing::{Blocks, NEIGHBOURS, facing};
 use crate::equation::sources::Sources;
 use equilux_bake::oven::cached::{NewValue, cached_or_revised};
 use equilux_bake::rays::scenery::Scenery;
 use equilux_bake::rays::sources::{Source, bear_on, form_factors};
-use equilux_formats::fingerprint::{Content, Digest, Key};
+use equilux_formats::fingerprint::{Digest, Key};
 use equilux_formats::rows::{Precision, RowGroup};
 use equilux_formats::store::Lookup;
 use equilux_formats::{Error, Result, Rows, SourceRows};
 use rayon::prelude::*;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::OnceLock;
-
-/// Unknowns that share a list of the sources whose light they get by form factors: those that have a ray that ends on one of
-/// them, with all of their body, since the narrow sides of a lamp have few. The rays of a source say nothing about those of a receiver, so light of all others, which receivers get along their
-/// rows, is neither lost nor counted twice.
-const NEIGHBOURS: usize = 512;
 
 /// Unknowns for which it is found out together what stands between them and a source. They share a list of sources.
 const BUNDLE: usize = 32;
@@ -55,8 +51,7 @@ impl<'a> FactorsOfSources<'a> {
     ) -> Self {
         let numbered = sources.sources.iter().zip(0..);
         let numbers = numbered.map(|(source, number)| (source.identity(), number)).collect();
-        let which: Vec<u8> = sources.of_element.iter().flat_map(|source| source.to_le_bytes()).collect();
-        let which = Content::new().bytes(which).digest();
+        let which = sources.digest();
         Self { coupler, scenery, coupled, since, sources, which, numbers, near: OnceLock::new() }
     }
 
@@ -168,7 +163,7 @@ impl<'a> FactorsOfSources<'a> {
 
     /// The light of all sources, as the average over what is not covered: that of sources which are not near arrives along the rows.
     fn whole(&self, instance: usize, found: &SourceRows) -> Rows {
-        let blocks = Blocks { coupler: self.coupler, coupled: self.coupled };
+        let blocks = Blocks { placed: self.coupler.placed, coupled: self.coupled };
         let rays = self.coupler.resolution.rays.unwrap_or(1);
         let number = |place: u32| self.numbers[&found.sources[place as usize]];
         let runs = found.runs.iter().map(|run| {
@@ -196,36 +191,17 @@ impl<'a> FactorsOfSources<'a> {
         single(self.sources.sources.len(), rows)
     }
 
-    /// For each instance, for each of its runs of [`NEIGHBOURS`] unknowns, the sources that have a ray that ends on one of them, and
-    /// those of their bodies.
+    /// For each instance, for each of its runs of unknowns, the sources that face it.
     fn near(&self) -> Vec<Vec<Near>> {
-        let placed = self.coupler.placed;
-        let blocks = Blocks { coupler: self.coupler, coupled: self.coupled };
-        let runs = |k: usize| vec![vec![]; placed.unknowns_of(k).div_ceil(NEIGHBOURS)];
-        let mut met: Vec<Vec<Vec<u32>>> = (0..placed.instances.len()).map(runs).collect();
-        for instance in 0..placed.instances.len() {
-            let first = placed.columns_of(instance).start;
-            for unknown in 0..placed.unknowns_of(instance) {
-                for &source in &self.sources.on_column[first + unknown] {
-                    for (column, _) in blocks.row(instance, unknown) {
-                        let other = placed.instance_of_column(column);
-                        let run = (column - placed.columns_of(other).start) / NEIGHBOURS;
-                        let met: &mut Vec<u32> = &mut met[other][run];
-                        if met.last() != Some(&source) {
-                            met.push(source);
-                        }
-                    }
-                }
-            }
-        }
-        let Sources { sources, body_of, .. } = self.sources;
-        let with_bodies = |met: Vec<u32>| -> Near {
-            let met: BTreeSet<u32> = met.into_iter().collect();
-            let bodies = met.iter().flat_map(|&source| &body_of[source as usize]);
-            let named = bodies.map(|&source| (sources[source as usize].identity(), source));
-            named.collect::<BTreeSet<_>>().into_iter().collect()
+        let sources = &self.sources.sources;
+        let named = |run: Vec<u32>| -> Near {
+            let mut near: Near =
+                run.into_iter().map(|source| (sources[source as usize].identity(), source)).collect();
+            near.sort_unstable();
+            near
         };
-        met.into_iter().map(|runs| runs.into_iter().map(with_bodies).collect()).collect()
+        let runs = facing(self.coupler.placed, self.coupled, self.sources);
+        runs.into_iter().map(|runs| runs.into_iter().map(named).collect()).collect()
     }
 }
 
@@ -236,24 +212,4 @@ fn single(senders: usize, rows: impl IntoIterator<Item = Row>) -> Rows {
         RowGroup { columns, values, receivers: 1 }
     };
     Rows::from_groups(senders, rows.into_iter().map(group), Precision::Single)
-}
-
-/// The blocks of a scene.
-struct Blocks<'a> {
-    coupler: &'a Coupler<'a>,
-    coupled: &'a [Coupled],
-}
-
-impl Blocks<'_> {
-    /// F_kk of an instance.
-    fn own(&self, instance: usize) -> &Rows {
-        self.coupled[instance].self_block(&self.coupler.placed.part_of(instance).part.self_block)
-    }
-
-    /// The whole row of an unknown of an instance: columns of the scene and form factors.
-    fn row(&self, instance: usize, unknown: usize) -> impl Iterator<Item = (usize, f64)> {
-        let first = self.coupler.placed.columns_of(instance).start;
-        let own = self.own(instance).row(unknown).map(move |(column, value)| (first + column, value));
-        own.chain(self.coupled[instance].coupling.row(unknown))
-    }
 }

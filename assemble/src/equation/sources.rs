@@ -9,6 +9,7 @@ use crate::placed_parts::PlacedParts;
 use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_bake::oven::placed_keys::{SECONDARY_SOURCES, SOURCES};
 use equilux_bake::rays::sources::{Effort, Source};
+use equilux_formats::fingerprint::{Content, Digest};
 use equilux_formats::{Element, Rgb};
 use std::collections::{BTreeMap, HashMap, HashSet};
 
@@ -36,7 +37,7 @@ pub struct Sources {
     /// W/m², one row a source; what the values that they were made of say.
     sent: Vec<Rgb>,
     /// For each element of the scene its source; u32::MAX if there is none.
-    pub of_element: Vec<u32>,
+    of_element: Vec<u32>,
     /// The sources on each column of the scene's blocks.
     pub on_column: Vec<Vec<u32>>,
     /// For each source those of its body.
@@ -110,6 +111,17 @@ impl Sources {
         let on_column = on_columns(placed, &of_element);
         let body_of = (0..sources.len() as u32).map(|source| vec![source]).collect();
         (!sources.is_empty()).then_some(Self { sources, sent, of_element, on_column, body_of, what, effort })
+    }
+
+    /// The source of an element of the scene.
+    pub fn of_element_at(&self, element: usize) -> Option<u32> {
+        Some(self.of_element[element]).filter(|&source| source != u32::MAX)
+    }
+
+    /// What the keys of their blocks record: which elements of the scene belong to which source.
+    pub fn digest(&self) -> Digest {
+        let which: Vec<u8> = self.of_element.iter().flat_map(|source| source.to_le_bytes()).collect();
+        Content::new().bytes(which).digest()
     }
 
     /// What emitting sources send, W/m².

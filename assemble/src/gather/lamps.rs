@@ -77,13 +77,18 @@ impl Lamp {
 
     /// The irradiance at a place with this normal, W/m², nothing being in the way.
     pub fn unoccluded(&self, place: DVec3, normal: DVec3) -> Rgb {
+        self.intensity * self.arriving(place, normal)
+    }
+
+    /// The same for a lamp of unit intensity, 1/m².
+    pub fn arriving(&self, place: DVec3, normal: DVec3) -> f64 {
         let to = place - self.position;
         let cosine = -normal.dot(to) / to.length();
         if cosine.is_nan() || cosine <= 0.0 {
-            return Rgb::BLACK;
+            return 0.0;
         }
         let sent = self.cone.as_ref().map_or(1.0, |cone| cone.falloff(to));
-        self.intensity * (sent * cosine / to.length_squared())
+        sent * cosine / to.length_squared()
     }
 
     fn over(&self, world: &World, piece: &SurfacePiece) -> Rgb {

@@ -208,7 +208,7 @@ fn pieces(element: &Element) -> Vec<Piece> {
 }
 
 /// Two tangents and the normal (Duff et al. 2017, "Building an orthonormal basis, revisited").
-fn frame(n: DVec3) -> [DVec3; 3] {
+pub(super) fn frame(n: DVec3) -> [DVec3; 3] {
     let sign = 1f64.copysign(n.z);
     let a = -1.0 / (sign + n.z);
     let b = n.x * n.y * a;

@@ -10,6 +10,7 @@
 //! element_grid → surfaces           the unknown at a place on a face
 //! scenery                           the same among placed parts
 //! alone → counts → recounts         what the rays of a row end on, in its part, in a scene, after an edit; replicas: how uncertain that is
+//! areas                             what the rays of pieces of surface that are no unknowns end on
 //! obstacles                         what may stand between two groups of places
 //! sources                           form factors to small, bright polygons, by shadow rays
 //! ```
@@ -17,6 +18,7 @@
 //! `index` finds first hits among elements, for pictures, and as the independent check of all of these.
 
 pub mod alone;
+pub mod areas;
 pub mod counts;
 mod element_grid;
 mod face_tree;
@@ -31,7 +33,7 @@ pub mod samples;
 pub mod scenery;
 #[cfg(test)]
 pub(crate) mod shapes;
-mod sobol;
+pub mod sobol;
 pub mod sources;
 pub mod surfaces;
 mod tracing;

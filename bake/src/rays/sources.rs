@@ -9,6 +9,8 @@
 //! over pairs of points, one on the unknown and one on the source (Cohen & Wallace 1993, §4.4 for the contour; Campbell & Fussell
 //! 1990 for the product).
 
+mod areas;
+
 use super::hemisphere::Emitters;
 use super::obstacles::{Barrier, Between, Eight, Few, Hull, LANES, between, stopped};
 use super::scenery::Scenery;
@@ -24,6 +26,8 @@ use glam::{DAffine3, DVec3};
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::LazyLock;
+
+pub use areas::{form_factors_of_areas, in_view, mean_of_point};
 
 /// How many shadow rays a form factor takes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +50,9 @@ impl Effort {
 /// Where the first rays agree, one receiver in so many goes on, and its result counts as often: else what few rays meet
 /// would be left out on average.
 const GO_ON: u32 = 8;
+
+/// First rays from pieces of surface where each looks for what stops it; neighbours find what these miss.
+const FEW_IN_CROWDS: u32 = 16;
 
 /// The finest grid of points at which the contour is taken, along a side.
 const FINEST: usize = 16;
@@ -119,7 +126,8 @@ pub fn form_factors(
     effort: Effort,
 ) -> Vec<Vec<(u32, f64)>> {
     // The widest vector instructions of the machine; the order of operations, and with it the result, does not change.
-    pulp::Arch::new().dispatch(Neighbours { scenery, instance, unknowns, sources, effort })
+    let receivers = Receivers::Unknowns(unknowns);
+    pulp::Arch::new().dispatch(Neighbours { scenery, instance, receivers, sources, effort })
 }
 
 /// Whether anything within these boxes, in scene coordinates, may bear on the form factors from some neighbouring unknowns of an
@@ -158,22 +166,47 @@ pub fn mean_over(
     (0..places).map(at).fold(Rgb::BLACK, |sum, light| sum + light) / f64::from(places)
 }
 
+/// For each receiver the sources that it sees, and the form factors.
+type Rows = Vec<Vec<(u32, f64)>>;
+
+/// What receives light.
+enum Receivers<'a> {
+    /// Unknowns of the instance.
+    Unknowns(Range<usize>),
+    /// Pieces of its surface, and a number that chooses places on all of them.
+    Areas { areas: &'a [&'a Emitters], number: u32 },
+}
+
+impl<'a> Receivers<'a> {
+    fn all(&self, scenery: &'a Scenery, instance: usize) -> Vec<Receiver<'a>> {
+        match self {
+            Self::Unknowns(unknowns) => {
+                unknowns.clone().map(|unknown| Receiver::new(scenery, instance, unknown)).collect()
+            }
+            &Self::Areas { areas, number } => {
+                let receiver = |&area| Receiver { scenery, instance, number, area, goes_on: false };
+                areas.iter().map(receiver).collect()
+            }
+        }
+    }
+}
+
 struct Neighbours<'a> {
     scenery: &'a Scenery,
     instance: usize,
-    unknowns: Range<usize>,
+    receivers: Receivers<'a>,
     sources: &'a [(u32, &'a Source)],
     effort: Effort,
 }
 
 impl pulp::NullaryFnOnce for Neighbours<'_> {
-    type Output = Vec<Vec<(u32, f64)>>;
+    type Output = Rows;
 
     #[inline(always)]
-    fn call(self) -> Vec<Vec<(u32, f64)>> {
-        let Self { scenery, instance, unknowns, sources, effort } = self;
-        let areas = unknowns.clone().map(|unknown| scenery.surfaces_of(instance).emitters(unknown));
-        let here = Hull::around(areas);
+    fn call(self) -> Rows {
+        let Self { scenery, instance, receivers, sources, effort } = self;
+        let receivers = receivers.all(scenery, instance);
+        let here = Hull::around(receivers.iter().map(|receiver| receiver.area));
         let to_here = scenery.placement_of(instance).inverse();
         let mut candidates = Vec::with_capacity(sources.len());
         for &(number, source) in sources {
@@ -184,9 +217,9 @@ impl pulp::NullaryFnOnce for Neighbours<'_> {
                 candidates.push(Candidate { number, source, hull, between });
             }
         }
-        let mut rows = Vec::with_capacity(unknowns.len());
-        for unknown in unknowns {
-            rows.push(Receiver::new(scenery, instance, unknown).form_factors(&candidates, effort));
+        let mut rows = Vec::with_capacity(receivers.len());
+        for receiver in &receivers {
+            rows.push(receiver.form_factors(&candidates, effort));
         }
         rows
     }
@@ -200,17 +233,21 @@ struct Candidate {
     between: Between<Vec<Barrier>>,
 }
 
-/// An unknown of an instance, in the coordinates of that.
+/// An unknown of an instance, or a piece of its surface, in the coordinates of that.
 struct Receiver<'a> {
     scenery: &'a Scenery,
     instance: usize,
-    unknown: usize,
+    /// Chooses places on it.
+    number: u32,
     area: &'a Emitters,
+    /// Whether some more rays are traced where the first agree.
+    goes_on: bool,
 }
 
 impl<'a> Receiver<'a> {
     fn new(scenery: &'a Scenery, instance: usize, unknown: usize) -> Self {
-        Self { scenery, instance, unknown, area: scenery.surfaces_of(instance).emitters(unknown) }
+        let area = scenery.surfaces_of(instance).emitters(unknown);
+        Self { scenery, instance, number: unknown as u32, area, goes_on: true }
     }
 
     #[inline(always)]
@@ -231,7 +268,8 @@ impl<'a> Receiver<'a> {
         let mut seen = Vec::with_capacity(open.len());
         for (sight, unoccluded) in &open {
             // Errors of independent sources add up as squares, so the weaker need fewer rays.
-            let importance = (unoccluded / most).sqrt();
+            let importance = unoccluded / most;
+            let importance = if self.goes_on { importance.sqrt() } else { importance };
             let rays = [0, 1].map(|k| (effort.most[k] * importance).max(effort.fewest[k]).ceil() as u32);
             let Candidate { number, source, .. } = sight.candidate;
             let value = match source.polygon() {
@@ -296,7 +334,7 @@ impl<'a> Receiver<'a> {
     /// A number for the rays to a source of this identity.
     #[inline(always)]
     fn seed(&self, source: u64) -> u32 {
-        sobol::hash(self.unknown as u32 ^ sobol::hash(source as u32 ^ 0x2545_f491))
+        sobol::hash(self.number ^ sobol::hash(source as u32 ^ 0x2545_f491))
     }
 }
 
@@ -310,7 +348,10 @@ struct Sight<'a> {
 impl Sight<'_> {
     /// The share of the light of a polygon that arrives, by so many rays at first and in all.
     #[inline(always)]
-    fn visible(&self, [first, all]: [u32; 2]) -> f64 {
+    fn visible(&self, [mut first, all]: [u32; 2]) -> f64 {
+        if matches!(self.between, Between::Crowd) && !self.receiver.goes_on {
+            first = first.min(FEW_IN_CROWDS);
+        }
         if matches!(&self.between, Between::Plates(few) if few.is_empty()) {
             return 1.0;
         }
@@ -319,7 +360,8 @@ impl Sight<'_> {
         if sum > 0.0 && (open == 0.0 || open == sum) {
             // What the first rays agree on, and how much a later disagreement counts.
             agreed = open / sum;
-            if first >= all || !self.receiver.seed(self.candidate.source.identity).is_multiple_of(GO_ON) {
+            let seed = self.receiver.seed(self.candidate.source.identity);
+            if first >= all || !self.receiver.goes_on || !seed.is_multiple_of(GO_ON) {
                 return agreed;
             }
             weight_of_more = f64::from(GO_ON);
