@@ -42,6 +42,8 @@ pub mod placed_parts;
 #[doc(hidden)]
 pub mod proof;
 #[doc(hidden)]
+pub mod receivers;
+#[doc(hidden)]
 pub mod report;
 #[doc(hidden)]
 pub mod run;

@@ -10,6 +10,7 @@ pub mod atlas;
 mod authored;
 mod bands;
 mod bounds;
+pub mod by_rays;
 pub mod chart;
 pub mod contacts;
 mod dilate;
@@ -27,8 +28,10 @@ pub mod pack;
 pub mod patch;
 mod seams;
 pub mod side;
+mod squares;
 pub mod texels;
 mod tints;
+mod traced_chart;
 mod write;
 
 pub use images::Units;
@@ -100,6 +103,18 @@ impl<'a> Lightmap<'a> {
     ) -> Result<Self> {
         let tiles = atlas.tiles();
         let values = values(scene, atlas, &tiles, irradiance, ("lightmap", ROWS_PER_TEXEL), monitor)?;
+        Self::of_values(scene, atlas, values, monitor)
+    }
+
+    /// The lightmap of `scene` with this irradiance of the texels of each tile, W/m²; none for those without light. Fails as
+    /// [`Lightmap::new`] does.
+    pub fn of_values(
+        scene: &'a Scene,
+        atlas: &'a Atlas,
+        values: Vec<Vec<Option<Rgb>>>,
+        monitor: &Monitor,
+    ) -> Result<Self> {
+        let tiles = atlas.tiles();
         let (mut irradiance, holds) = with_margins(values, &tiles);
         let mut tints = None;
         if let Some(coats) = tints::coats(scene) {

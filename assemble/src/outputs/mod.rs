@@ -8,7 +8,7 @@ pub mod scene_light;
 use crate::gather::points::{self, Place};
 use crate::lightmap::atlas::Atlas;
 use crate::lightmap::light::TexelLight;
-use crate::lightmap::{self, Lightmap};
+use crate::lightmap::{self, Lightmap, by_rays};
 use crate::output_file::WrittenFiles;
 use crate::outputs::scene_light::SceneLight;
 use crate::picture::camera::View;
@@ -17,13 +17,14 @@ use crate::picture::difference::ReferenceLight;
 use crate::picture::exposure::Exposure;
 use crate::picture::shot;
 use crate::picture::{shade, strip, wireframe, write_png};
+use crate::receivers::Receivers;
 use crate::report::process::{cpu_seconds, cpu_since};
 use crate::solve::Solved;
 use crate::statistics::mean_over_area;
 use crate::verify::Classic;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::rays::RayIndex;
-use equilux_formats::{Error, Result, Rgb, Scene, unless_stopped};
+use equilux_formats::{Error, Result, Rgb, Scene, Store, unless_stopped};
 use glam::DVec3;
 use rayon::prelude::*;
 use requests::{OutputRequests, Pictures};
@@ -50,6 +51,8 @@ const FIRST_ROUNDS: usize = 3;
 pub struct RunResults<'a> {
     /// The solved scene.
     pub solved: &'a Solved,
+    /// The cache.
+    pub store: &'a Store,
     /// The classic solution, if requested.
     pub classic: Option<&'a Classic>,
     /// The layout of the lightmap, if requested.
@@ -190,7 +193,11 @@ fn write_lightmaps(
     let gather = results.solved.gather();
     let mean = mean_over_area(results.solved.elements(), &results.solved.irradiance);
     let texel_light = TexelLight::new(&gather, mean);
-    let mut lightmap = Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor);
+    let mut lightmap = match Receivers::new(scene, results.solved, results.store, by_rays::RAYS, monitor) {
+        Some(receivers) => by_rays::irradiance(&receivers, atlas)
+            .and_then(|values| Lightmap::of_values(scene, atlas, values, monitor)),
+        None => Lightmap::new(scene, atlas, |texels| texel_light.irradiance(texels), monitor),
+    };
     if options.directions {
         let directions = |texels: &_| texel_light.directions(texels);
         lightmap = lightmap.and_then(|lightmap| lightmap.with_directions(directions, monitor));

@@ -70,6 +70,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
 
     let results = RunResults {
         solved: &solved,
+        store: &store,
         classic: classic.as_ref(),
         atlas: atlas.as_ref(),
         places,

@@ -1,0 +1,241 @@
+//! The light of texels where rows of the scene are counted rays.
+//!
+//! Light with sharp shadows has form factors from each texel. All other light arrives along the rays of some texels, and is
+//! interpolated between them ([`super::traced_chart`]); where they are follows from geometry alone. Both kinds of rows are kept, for some charts of an instance together: other
+//! lights, colours and textures cost products.
+
+use super::atlas::{Atlas, Tile};
+use super::squares::Square;
+use super::traced_chart::{TracedChart, TracedRays, lattice};
+use crate::receivers::Receivers;
+use equilux_bake::oven::cached::cached;
+use equilux_formats::fingerprint::{Content, Digest, Manifest};
+use equilux_formats::rows::{CountedRow, Precision, RowGroup};
+use equilux_formats::{Result, Rgb, Rows};
+use rayon::prelude::*;
+use std::cell::OnceCell;
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Rays of a texel that gets any.
+pub const RAYS: u32 = 512;
+
+/// Charts are kept together up to this many texels.
+const GROUP_TEXELS: usize = 1 << 16;
+
+/// The name of rows of texels in manifests and in the cache.
+const ROWS: &str = "rays of texels";
+/// The name of how charts are divided in manifests and in the cache.
+const LAYOUT: &str = "layout of rays of texels";
+/// The name of form factors of texels to lights with sharp shadows.
+const SHARP: &str = "light of texels";
+/// The name of form factors of the places that these rays see.
+const PLACES: &str = "light of places near texels";
+
+/// For each tile the irradiance of its texels, W/m²; none for those without light: outside of the chart, or covered with all
+/// of the chart. Fails if the monitor was stopped meanwhile.
+pub fn irradiance(receivers: &Receivers, atlas: &Atlas) -> Result<Vec<Vec<Option<Rgb>>>> {
+    let tiles = atlas.tiles();
+    let monitor = receivers.coupler.monitor;
+    monitor.begin("lightmap", tiles.len(), super::ROWS_PER_TEXEL * texels_of(&tiles) as f64);
+    let mut light = Vec::with_capacity(tiles.len());
+    for (number, range) in groups(&tiles) {
+        let group = Group { receivers, atlas, tiles: &tiles[range.clone()], number };
+        light.extend(group.irradiance()?);
+        monitor.advance(range.len());
+    }
+    Ok(light)
+}
+
+fn texels_of(tiles: &[Tile]) -> usize {
+    tiles.iter().map(Tile::texels).sum()
+}
+
+/// Ranges of tiles that are kept together, numbered by instance.
+fn groups(tiles: &[Tile]) -> Vec<(usize, Range<usize>)> {
+    let mut groups: Vec<(usize, Range<usize>)> = vec![];
+    for (place, tile) in tiles.iter().enumerate() {
+        match groups.last_mut() {
+            Some((_, range)) if tiles[range.start].instance == tile.instance => {
+                if texels_of(&tiles[range.start..=place]) <= GROUP_TEXELS {
+                    range.end = place + 1;
+                } else {
+                    let number = groups[groups.len() - 1].0 + 1;
+                    groups.push((number, place..place + 1));
+                }
+            }
+            _ => groups.push((0, place..place + 1)),
+        }
+    }
+    groups
+}
+
+/// Some charts of an instance.
+struct Group<'a> {
+    receivers: &'a Receivers<'a>,
+    atlas: &'a Atlas,
+    tiles: &'a [Tile],
+    /// Their number in the instance.
+    number: usize,
+}
+
+impl Group<'_> {
+    fn instance(&self) -> usize {
+        self.tiles[0].instance
+    }
+
+    fn irradiance(&self) -> Result<Vec<Vec<Option<Rgb>>>> {
+        let Receivers { columns, sharp, .. } = self.receivers;
+        let charts = OnceCell::new();
+        let charts = || -> Result<&Vec<TracedChart>> {
+            if charts.get().is_none() {
+                let _ =
+                    charts.set(self.each_tile(|tile| TracedChart::new(self.receivers, self.atlas, tile))?);
+            }
+            Ok(charts.get().expect("just made"))
+        };
+        let traced = OnceCell::new();
+        let traced = || -> Result<&Vec<TracedRays>> {
+            if traced.get().is_none() {
+                let mut charts = charts()?.iter();
+                let _ = traced.set(self.each_tile(|_| charts.next().expect("one for each tile").rays())?);
+            }
+            Ok(traced.get().expect("just made"))
+        };
+        let with_rays =
+            |what: &str| self.manifest(what).setting("rays of a texel", self.receivers.samples.rays());
+        let rays = self.kept(ROWS, with_rays(ROWS), || {
+            let rows = traced()?.iter().flat_map(|tile| &tile.rows);
+            let rows = rows.map(|row| CountedRow { counts: row.counts.clone(), rays: row.rays });
+            Ok(Rows::from_counts(columns.count(), rows))
+        })?;
+        let layout = self.kept(LAYOUT, with_rays(LAYOUT), || {
+            let marks = traced()?.iter().flat_map(|tile| &tile.marks);
+            let row = |&mark: &u8| if mark == 0 { vec![] } else { vec![(0, f64::from(mark))] };
+            Ok(block(1, marks.map(row)))
+        })?;
+        let lights = sharp.strengths.len();
+        let with_lights = |manifest: Manifest| manifest.digest("lights", sharp.digest());
+        let light = self.kept(SHARP, with_lights(self.manifest(SHARP)), || {
+            let mut charts = charts()?.iter();
+            let rows = self.each_tile(|_| Ok(charts.next().expect("one for each tile").sharp()))?;
+            Ok(block(lights, rows.into_iter().flatten()))
+        })?;
+        let places = self.receivers.places_of(&rays);
+        let on_places = self.kept(PLACES, with_lights(with_rays(PLACES)), || {
+            Ok(block(lights, self.receivers.sharp_on_places(&places).into_iter()))
+        })?;
+        let sent = self.receivers.sent_by_places(&places, &on_places);
+        let kept = KeptRows { rays, layout, light };
+        let starts = self.tiles.iter().scan(0, |end, tile| {
+            *end += tile.texels();
+            Some(*end - tile.texels())
+        });
+        let tiles: Vec<(&Tile, usize)> = self.tiles.iter().zip(starts).collect();
+        Ok(tiles.into_par_iter().map(|(tile, start)| self.lit(tile, start, &kept, &sent)).collect())
+    }
+
+    /// What `of` makes of each tile. Fails if the monitor was stopped.
+    fn each_tile<'b, T>(&'b self, mut of: impl FnMut(&'b Tile) -> Result<T>) -> Result<Vec<T>> {
+        let of = |tile: &'b Tile| {
+            let made = of(tile)?;
+            self.receivers.check_stopped()?;
+            Ok(made)
+        };
+        self.tiles.iter().map(of).collect()
+    }
+
+    fn kept(&self, what: &str, manifest: Manifest, make: impl FnOnce() -> Result<Rows>) -> Result<Rows> {
+        let coupler = &self.receivers.coupler;
+        let name = coupler.name(self.instance(), &format!("{what} {}", self.number));
+        Ok(cached(coupler.store, &name, &manifest, coupler.monitor, make)?.0)
+    }
+
+    /// What all blocks depend on: the scene's geometry and the texels.
+    fn manifest(&self, what: &str) -> Manifest {
+        self.receivers.coupler.manifest(self.instance(), what).digest("texels", self.digest())
+    }
+
+    fn digest(&self) -> Digest {
+        let mut content = Content::new();
+        for tile in self.tiles {
+            let (chart, grid) = self.atlas.chart_of(tile);
+            let planes: Vec<u32> = chart.planes.iter().map(|&plane| plane as u32).collect();
+            content =
+                content.bytes([tile.chart as u32, tile.size[0], tile.size[1]].map(u32::to_le_bytes).concat());
+            content = content.bytes(planes.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<u8>>());
+            for side in &chart.sides {
+                let corners = side.corners.as_slice().iter().flat_map(|corner| corner.to_array());
+                content = content.f64s(&corners.collect::<Vec<f64>>());
+            }
+            for patch in grid.patches() {
+                let vectors = [patch.origin, patch.du, patch.dv, patch.normal];
+                content = content.f64s(&vectors.map(|vector| vector.to_array()).concat());
+            }
+        }
+        content.digest()
+    }
+
+    /// The light of a tile whose texels have the rows from `start` on.
+    fn lit(
+        &self,
+        tile: &Tile,
+        start: usize,
+        KeptRows { rays, layout, light }: &KeptRows,
+        places: &HashMap<u32, Rgb>,
+    ) -> Vec<Option<Rgb>> {
+        let number = |[x, y]: [u32; 2]| (y * tile.size[0] + x) as usize;
+        let marks: Vec<u8> = (0..tile.texels())
+            .map(|texel| layout.row(start + texel).map(|(_, mark)| mark as u8).sum())
+            .collect();
+        let mut along: Vec<Option<Rgb>> = vec![None; tile.texels()];
+        let (mut leaves, mut squares, mut depth) = (vec![], lattice(tile.size), 0);
+        while !squares.is_empty() {
+            let is_leaf = |square: &Square| {
+                square.is_smallest() || marks[number(square.low)] == TracedRays::leaf_at(depth)
+            };
+            let (done, divided): (Vec<Square>, Vec<Square>) = squares.into_iter().partition(is_leaf);
+            leaves.extend(done);
+            squares = divided.into_iter().flat_map(Square::parts).collect();
+            depth += 1;
+        }
+        // From large to small: what lies on the edge of a larger one is interpolated there.
+        for square in leaves {
+            let corners = square.corners().map(|at| {
+                let number = number(at);
+                if along[number].is_none() && marks[number] > 0 {
+                    along[number] = Some(self.receivers.along(tile.instance, rays, start + number, places));
+                }
+                along[number].unwrap_or_default()
+            });
+            if square.has_inside() {
+                for at in square.texels() {
+                    along[number(at)].get_or_insert_with(|| square.interpolated(corners, at));
+                }
+            }
+        }
+        let light = along.into_iter().enumerate().map(|(texel, along)| {
+            along.map(|along| along + self.receivers.strength_of(light, start + texel))
+        });
+        light.collect()
+    }
+}
+
+/// Blocks of some charts.
+struct KeptRows {
+    /// What rays of texels end on.
+    rays: Rows,
+    /// Marks of texels: see [`TracedRays`].
+    layout: Rows,
+    /// Form factors to lights with sharp shadows.
+    light: Rows,
+}
+
+/// A block of these rows.
+fn block(columns: usize, rows: impl Iterator<Item = Vec<(u32, f64)>>) -> Rows {
+    let group = |row: Vec<(u32, f64)>| {
+        let (columns, values) = row.into_iter().unzip();
+        RowGroup { columns, values, receivers: 1 }
+    };
+    Rows::from_groups(columns, rows.map(group), Precision::Single)
+}
