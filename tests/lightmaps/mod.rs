@@ -2,6 +2,7 @@
 
 mod authored;
 mod borders;
+mod by_rays;
 pub mod files;
 mod handed;
 mod light;
