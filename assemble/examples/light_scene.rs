@@ -17,7 +17,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
     let corner = element.corners.as_slice()[0];
     let place = Place { point: element.centroid.lerp(corner, 0.5), normal: element.normal };
-    let lights = light_at(&solved.gather(), solved.elements(), &[place], &Monitor::default())?;
+    let gather = solved.gather();
+    let lights =
+        light_at(|points| gather.irradiance(points), solved.elements(), &[place], &Monitor::default())?;
     if let Some(light) = &lights[0] {
         println!("{:.2?} W/m² at {:.2}, gathered there", light.irradiance.0, place.point);
     }

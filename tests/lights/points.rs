@@ -29,7 +29,13 @@ fn a_point_of_the_floor_gets_the_inverse_square_of_a_lamp_or_nothing() {
     let dark: Vec<Rgb> = vec![Rgb::BLACK; scene.placed.world.elements.len()];
     let gather = Gather::new(&scene.placed, &dark, &dark, &lights, EXACT);
     let places = grid();
-    let found = light_at(&gather, &scene.placed.world.elements, &places, &Monitor::default()).unwrap();
+    let found = light_at(
+        |points| gather.irradiance(points),
+        &scene.placed.world.elements,
+        &places,
+        &Monitor::default(),
+    )
+    .unwrap();
     for (Place { point, .. }, found) in places.iter().zip(found) {
         let to = at - *point;
         // The ray to the lamp is half way up at the middle between the two.

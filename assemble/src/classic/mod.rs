@@ -155,7 +155,8 @@ pub fn run(job: &ClassicJob, monitor: &Monitor) -> Result<ClassicReport> {
     let gather = Gather::new(&placed, &emission, &solved.radiosity, &lights, EXACT);
     let outputs = match &places {
         Some(places) => {
-            let lights = points::light(&gather, &placed.world.elements, places, monitor)?;
+            let lights =
+                points::light(|points| gather.irradiance(points), &placed.world.elements, places, monitor)?;
             vec![write_points(&job.out.join(&scene.name), places, scene.origin, &lights, &solved.irradiance)?]
         }
         None => vec![],

@@ -135,12 +135,16 @@ impl Gather {
 
     /// Irradiance at points from all light, W/m².
     pub fn irradiance(&self, points: &[Element]) -> Vec<Rgb> {
-        let mut found = self.glow(points);
         let reflected = match &self.scenery {
             Some(scenery) => self.reflected_by_rays(scenery, points),
             None => self.reflected(points),
         };
-        found.iter_mut().zip(reflected).for_each(|(sum, h)| *sum += h);
+        self.sharp(points).into_iter().zip(reflected).map(|(a, b)| a + b).collect()
+    }
+
+    /// Exact irradiance at points from emitting surfaces, lamps and suns, W/m².
+    pub fn sharp(&self, points: &[Element]) -> Vec<Rgb> {
+        let mut found = self.glow(points);
         for lamp in &self.lamps {
             let arriving = points.iter().map(|point| lamp.at(&self.world, point));
             found.iter_mut().zip(arriving).for_each(|(sum, h)| *sum += h);

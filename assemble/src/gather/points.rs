@@ -2,7 +2,6 @@
 //! gathered with exact visibility like that of lightmap texels, together with the irradiance of the elements on which
 //! the points lie.
 
-use crate::gather::Gather;
 use crate::gather::receiver::receiver;
 use crate::output_file;
 use crate::table::Table;
@@ -84,10 +83,10 @@ pub fn places(table: &Table, origin: DVec3) -> Result<Vec<Place>> {
 /// Cost of the light at a point, in rows of form factors.
 pub const ROWS_PER_POINT: f64 = 1.0;
 
-/// The light at points; none for points on no surface of `elements`, the scene's elements. Fails if the monitor is
+/// The light at points, as `irradiance` computes it, W/m²; none for points on no surface of `elements`, the scene's elements. Fails if the monitor is
 /// stopped meanwhile; earlier stops only ended the exchange.
 pub fn light(
-    gather: &Gather,
+    irradiance: impl Fn(&[Element]) -> Vec<Rgb>,
     elements: &[Element],
     places: &[Place],
     monitor: &Monitor,
@@ -107,7 +106,7 @@ pub fn light(
             return Err(Error::Stopped);
         }
         let points: Vec<Element> = batch.iter().map(|(_, point, _)| *point).collect();
-        for (&(place, _, element), irradiance) in batch.iter().zip(gather.irradiance(&points)) {
+        for (&(place, _, element), irradiance) in batch.iter().zip(irradiance(&points)) {
             lights[place] = Some(PointLight { element, irradiance });
         }
         monitor.advance(batch.len());

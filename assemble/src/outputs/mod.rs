@@ -24,7 +24,7 @@ use crate::statistics::mean_over_area;
 use crate::verify::Classic;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::rays::RayIndex;
-use equilux_formats::{Error, Result, Rgb, Scene, Store, unless_stopped};
+use equilux_formats::{Element, Error, Result, Rgb, Scene, Store, unless_stopped};
 use glam::DVec3;
 use rayon::prelude::*;
 use requests::{OutputRequests, Pictures};
@@ -139,7 +139,7 @@ pub fn write_all(
     let mut written = write_tables(requests, &folder, scene.origin, results, exposure)?;
     let lightmaps = write_lightmaps(requests, &folder, scene, results, exposure, monitor)?;
     let (start, cpu) = (Instant::now(), cpu_seconds());
-    let points = write_points(&folder, scene.origin, results, monitor)?;
+    let points = write_points(&folder, scene, results, monitor)?;
     let (point_time, point_cpu) = (start.elapsed(), cpu_since(cpu));
     let mut notes = Vec::new();
     if let Some(shot) = &requests.shot {
@@ -157,19 +157,27 @@ pub fn write_all(
 
 fn write_points(
     folder: &Path,
-    origin: DVec3,
+    scene: &Scene,
     results: &RunResults,
     monitor: &Monitor,
 ) -> Result<Option<WrittenFiles>> {
     let Some(places) = results.places else { return Ok(None) };
     let gather = results.solved.gather();
     let elements = results.solved.elements();
-    let Some(lights) = unless_stopped(points::light(&gather, elements, places, monitor))? else {
+    let receivers = Receivers::new(scene, results.solved, results.store, by_rays::RAYS, monitor);
+    let irradiance = |points: &[Element]| match &receivers {
+        Some(receivers) => {
+            let reflected = receivers.reflected_at(points);
+            gather.sharp(points).into_iter().zip(reflected).map(|(a, b)| a + b).collect()
+        }
+        None => gather.irradiance(points),
+    };
+    let Some(lights) = unless_stopped(points::light(irradiance, elements, places, monitor))? else {
         let note = format!("stopped: {POINTS} was not written; the file of an earlier run is unchanged");
         return Ok(Some(WrittenFiles { paths: vec![], notes: vec![note] }));
     };
     let path = folder.join(POINTS);
-    points::write(&path, places, origin, &lights, &results.solved.irradiance)?;
+    points::write(&path, places, scene.origin, &lights, &results.solved.irradiance)?;
     let lost = lights.iter().filter(|light| light.is_none()).count();
     let notes = match lost {
         0 => vec![],

@@ -9,6 +9,7 @@
 //! is wide brings what the place reflects on which it ends ([`columns`]): its texture ρ_j, its own sharp light D_j, and the
 //! element's mean H' of all other light. Rows do not depend on what lights send, nor on colours and textures.
 
+mod at_points;
 pub mod columns;
 pub mod open_area;
 pub mod sharp;
@@ -169,9 +170,22 @@ impl<'a> Receivers<'a> {
         [scale, least]: [f64; 2],
     ) -> Option<u32> {
         let here = &self.placed.instances[instance].placement;
+        let direction = here.transform_vector3(ray.direction);
+        self.column_at(landing, direction, (scale, |t| here.transform_point3(ray.at(t))), least)
+    }
+
+    /// The column of a ray that ends here. `direction`, and the point at a t: in scene coordinates, as is `scale` t. `least`: the
+    /// size of the smallest places, metres.
+    #[inline(always)]
+    fn column_at(
+        &self,
+        landing: Option<Landing>,
+        direction: DVec3,
+        (scale, at): (f64, impl Fn(f64) -> DVec3),
+        least: f64,
+    ) -> Option<u32> {
         let Some(Landing { instance: met, end, t }) = landing else {
-            let cell = SkyCells::towards(here.transform_vector3(ray.direction));
-            return Some(self.columns.sky(cell));
+            return Some(self.columns.sky(SkyCells::towards(direction)));
         };
         let End::Element(number) = end else { return None };
         let element = self.placed.world.elements_of(met).start + number as usize;
@@ -179,8 +193,7 @@ impl<'a> Receivers<'a> {
         if distance >= self.widths[element] {
             return Some(self.columns.element(element));
         }
-        let point = here.transform_point3(ray.at(t));
-        Some(self.columns.place(element, &self.placed.world.elements[element], point, [distance, least]))
+        Some(self.columns.place(element, &self.placed.world.elements[element], at(t), [distance, least]))
     }
 
     /// The places that these rows see, by column.
@@ -208,7 +221,11 @@ impl<'a> Receivers<'a> {
                 let corners: Vec<DVec3> = corners.iter().map(|&p| back.transform_point3(p)).collect();
                 let normal = back.transform_vector3(element.normal).normalize();
                 let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-                Some(OpenArea::of(self.scenery, instance, &[(&corners, normal)], middle)?.area)
+                let whole = [(corners.as_slice(), normal)];
+                // A ray ended here, so it is seen, also in a narrow gap that counts as covered.
+                OpenArea::of(self.scenery, instance, &whole, middle)
+                    .map(|open| open.area)
+                    .or_else(|| area_of(whole))
             };
             let areas: Vec<Option<Emitters>> = bundle.iter().map(open_area).collect();
             let known: Vec<&Emitters> = areas.iter().flatten().collect();

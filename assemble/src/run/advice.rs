@@ -175,7 +175,8 @@ impl TrialInputs<'_> {
         if monitor.stopped() {
             return Err(Error::Stopped);
         }
-        let lights = light(&solved.gather(), solved.elements(), places, monitor)?;
+        let gather = solved.gather();
+        let lights = light(|points| gather.irradiance(points), solved.elements(), places, monitor)?;
         Ok(SampledLight::of(&lights, &solved))
     }
 }
