@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 /// Rays from a point. Their noise is a few tenths of a percent of the mean light.
 const RAYS: u32 = 4096;
 
-/// A ray that light arrives along: what it ends on.
+/// The columns on which rays end, and how many on each.
 type Ends = Vec<(u32, u32)>;
 
 impl Receivers<'_> {

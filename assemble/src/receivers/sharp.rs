@@ -114,8 +114,7 @@ impl<'a> SharpLights<'a> {
         let first = first + self.lamps.len() as u32;
         let suns: Vec<(u32, &Source)> = (first..).zip(&self.suns).collect();
         if !suns.is_empty() {
-            let found =
-                form_factors_of_areas(scenery, instance, (areas, number), &suns, Effort::SUN_ON_TEXELS);
+            let found = form_factors_of_areas(scenery, instance, (areas, number), &suns, Effort::SUN);
             rows.iter_mut().zip(found).for_each(|(row, own)| row.extend(own));
         }
         rows

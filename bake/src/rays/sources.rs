@@ -10,6 +10,8 @@
 //! 1990 for the product).
 
 mod areas;
+mod effort;
+mod source;
 
 use super::hemisphere::Emitters;
 use super::obstacles::{Barrier, Between, Eight, Few, Hull, LANES, between, stopped};
@@ -19,33 +21,15 @@ use super::wide_tree::Ray;
 use crate::form_factor::contour::form_factor;
 use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Clipped, clip, distance};
-use crate::world::place_element;
-use equilux_formats::fingerprint::Content;
-use equilux_formats::{Element, Rgb};
-use glam::{DAffine3, DVec3};
+use equilux_formats::Rgb;
+use glam::DVec3;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::LazyLock;
 
 pub use areas::{form_factors_of_areas, in_view, mean_of_point};
-
-/// How many shadow rays a form factor takes.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Effort {
-    /// Rays to the source that sends an unknown the most: at first, and in all where they do not agree.
-    most: [f64; 2],
-    /// Rays to sources that send it little.
-    fewest: [f64; 2],
-}
-
-impl Effort {
-    /// For emitting surfaces.
-    pub const DIRECT: Self = Self { most: [64.0, 256.0], fewest: [4.0, 16.0] };
-    /// For suns, which cast sharp shadows.
-    pub const SUN: Self = Self { most: [64.0, 64.0], fewest: [64.0, 64.0] };
-    /// For what is reflected, which is weaker and has more sources.
-    pub const REFLECTED: Self = Self { most: [16.0, 32.0], fewest: [2.0, 2.0] };
-}
+pub use effort::Effort;
+pub use source::Source;
 
 /// Where the first rays agree, one receiver in so many goes on, and its result counts as often: else what few rays meet
 /// would be left out on average.
@@ -65,56 +49,6 @@ const ONE_POINT: f64 = 0.3;
 
 /// Diameters of an unknown over its distance from the source, for each two points of the grid.
 const POINTS_PER_NEARNESS: f64 = 1.5;
-
-/// A surface that shines: a polygon, or several that are no plane together.
-#[derive(Debug)]
-pub struct Source {
-    elements: Vec<Element>,
-    places: Emitters,
-    area: f64,
-    /// Follows from the elements and their places alone.
-    identity: u64,
-}
-
-impl Source {
-    /// The surface of these elements, in scene coordinates.
-    pub fn new(elements: Vec<Element>) -> Self {
-        let corners = elements.iter().flat_map(|element| element.corners.as_slice());
-        let numbers: Vec<f64> = corners.flat_map(|corner| corner.to_array()).collect();
-        let identity = Content::new().f64s(&numbers).digest().first_bytes();
-        Self::with_identity(elements, identity)
-    }
-
-    fn with_identity(elements: Vec<Element>, identity: u64) -> Self {
-        let (places, area) = (Emitters::new(&elements), elements.iter().map(|element| element.area).sum());
-        Self { elements, places, area, identity }
-    }
-
-    /// Its corners.
-    pub fn corners(&self) -> impl Iterator<Item = DVec3> + '_ {
-        self.elements.iter().flat_map(|element| element.corners.as_slice()).copied()
-    }
-
-    /// A number that follows from its form and place.
-    pub fn identity(&self) -> u64 {
-        self.identity
-    }
-
-    /// The same as the next of several sources at one place.
-    pub fn next_twin(self) -> Self {
-        Self { identity: Content::new().bytes(self.identity.to_le_bytes()).digest().first_bytes(), ..self }
-    }
-
-    fn moved(&self, by: DAffine3) -> Self {
-        let elements = self.elements.iter().map(|element| place_element(element, by, 0)).collect();
-        Self::with_identity(elements, self.identity)
-    }
-
-    /// The polygon, unless there are several.
-    fn polygon(&self) -> Option<&Element> {
-        if let [polygon] = self.elements.as_slice() { Some(polygon) } else { None }
-    }
-}
 
 /// The form factors from each of some neighbouring unknowns of an instance to those of `sources` that it sees, with their places
 /// among them.

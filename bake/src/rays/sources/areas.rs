@@ -7,15 +7,6 @@ use crate::rays::scenery::Scenery;
 use crate::rays::wide_tree::Ray;
 use glam::{DAffine3, DVec3};
 
-impl Effort {
-    /// For texels: shadows may end anywhere on them.
-    pub const TEXELS: Self = Self { most: [32.0, 128.0], fewest: [8.0, 16.0] };
-    /// For small places, of which a receiver sees many.
-    pub const PLACES: Self = Self { most: [8.0, 32.0], fewest: [8.0, 8.0] };
-    /// For suns on texels, whose shadows are sharp and nearly everywhere else whole.
-    pub const SUN_ON_TEXELS: Self = Self { most: [64.0, 64.0], fewest: [64.0, 64.0] };
-}
-
 /// The form factors from each of some neighbouring pieces of an instance, in its coordinates, to those of `sources` that it
 /// sees, with their places among them. `number` chooses the places.
 pub fn form_factors_of_areas(
