@@ -4,6 +4,7 @@ mod edits;
 mod kept;
 mod light;
 mod openings;
+mod split;
 
 use equilux_assemble::SolveSettings;
 use equilux_assemble::equation::environment::Environment;

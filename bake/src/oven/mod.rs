@@ -33,7 +33,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// Version of the form-factor code: part of every key, so that a change of the kernel bakes everything again.
-pub const KERNEL_VERSION: u32 = 9;
+pub const KERNEL_VERSION: u32 = 10;
 
 /// A baked part, with origins and times.
 #[derive(Debug)]

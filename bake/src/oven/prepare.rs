@@ -6,16 +6,15 @@ use crate::elements::clusters;
 use crate::elements::patches::patches;
 use crate::elements::{ElementSize, Panels, area, default_size, optics};
 use crate::equilibrium::default_solver;
-use crate::geometry::aabb::Aabb;
 use crate::textures::tints;
 use crate::treecode::{EXACT, Resolution, rays_for_tolerance};
 use crate::world::World;
 use equilux_formats::texture::TexturedTriangle;
 use equilux_formats::{
-    Element, Error, Face, FaceId, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, Part,
-    PartId, Result, Scene, Tints,
+    Element, Error, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, Part, PartId, Result,
+    Scene, Tints,
 };
-use glam::{DAffine3, DVec3};
+use glam::DAffine3;
 
 /// The settings for elements and parts.
 #[derive(Debug, Clone, PartialEq)]
@@ -281,13 +280,14 @@ fn divided(
     for (number, cell) in divide(whole).into_iter().enumerate() {
         let name = format!("cell {}", number + 1);
         let tints = tints(&cell, &materials, &textured);
-        let (mut geometry, origin) = recentred(cell);
+        // Cells keep the coordinates of the whole, so that all of them round alike and have the same rays.
         let rays = authored.resolution.rays;
-        geometry.patches = rays.map(|rays| patches(&geometry.elements, authored.element_size, rays));
+        let patches = rays.map(|rays| patches(&cell.elements, authored.element_size, rays));
+        let geometry = Geometry { patches, ..cell };
         instances.push(Instance {
             name: name.clone(),
             part: PartId::from_index(number),
-            placement: DAffine3::from_translation(origin),
+            placement: DAffine3::IDENTITY,
             emission_scale: 1.0,
             repainted: vec![],
         });
@@ -337,18 +337,4 @@ fn number_of(materials: &mut Vec<Material>, material: Material) -> MaterialId {
         materials.push(material);
         materials.len() - 1
     }))
-}
-
-/// The geometry moved so that its lowest corner is the origin, and where that corner was.
-fn recentred(geometry: Geometry) -> (Geometry, DVec3) {
-    let origin = Aabb::around(geometry.elements.iter().flat_map(|e| e.corners.as_slice())).low;
-    let element = |e: &Element| Element::new(e.corners.map(|p| p - origin), e.material, FaceId(e.face.0));
-    let face = |f: &Face| Face::new(f.corners.iter().map(|&p| p - origin).collect());
-    let moved = Geometry {
-        elements: geometry.elements.iter().map(element).collect(),
-        faces: geometry.faces.iter().map(face).collect(),
-        clusters: geometry.clusters.clone(),
-        patches: geometry.patches.clone(),
-    };
-    (moved, origin)
 }

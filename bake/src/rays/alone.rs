@@ -56,9 +56,10 @@ impl pulp::NullaryFnOnce for Alone<'_> {
     #[inline(always)]
     fn call(self) -> AloneRow {
         let Self { surfaces, samples, unknown, scratch: Scratch { rays, own, .. } } = self;
-        surfaces.emitters(unknown).rays(samples, unknown as u32, rays);
+        let emitters = surfaces.emitters(unknown);
+        emitters.rays(samples, emitters.number(), rays);
         own.clear();
-        let near = surfaces.emitters(unknown).bounds().diagonal();
+        let near = emitters.bounds().diagonal();
         let (mut covered, mut escaped) = (0, vec![0; rays.len().div_ceil(64)]);
         let mut reach = Aabb::EMPTY;
         for (number, ray) in rays.iter().enumerate() {

@@ -205,7 +205,8 @@ impl Placed<'_> {
     fn begin(&mut self) -> Vec<Ray> {
         let mut rays = std::mem::take(&mut self.scratch.rays);
         let surfaces = self.scenery.surfaces_of(self.instance);
-        surfaces.emitters(self.unknown).rays(self.samples, self.unknown as u32, &mut rays);
+        let emitters = surfaces.emitters(self.unknown);
+        emitters.rays(self.samples, emitters.number(), &mut rays);
         self.scratch.own.clear();
         self.scratch.others.clear();
         rays
@@ -334,7 +335,7 @@ mod tests {
         let first = |instance: usize| counts[..instance].iter().sum::<usize>() as u32;
         let emitters = scenery.surfaces_of(instance).emitters(unknown);
         let (mut rays, mut own, mut others, mut covered) = (vec![], vec![], vec![], 0);
-        emitters.rays(&SAMPLES, unknown as u32, &mut rays);
+        emitters.rays(&SAMPLES, emitters.number(), &mut rays);
         for ray in &rays {
             match scenery.land(instance, ray, emitters.bounds().diagonal()) {
                 None => others.push(first(counts.len())),

@@ -1,6 +1,7 @@
 //! The rays of an unknown: origins over its area, directions by the cosine around its normal.
 //!
-//! Everything is in the coordinates of its part, so rays move with the part, and is chosen by the unknown's number in it.
+//! Everything is in the coordinates of its part, so rays move with the part, and is chosen by where the unknown lies in it: an
+//! element has the same rays whatever its number, and so also as an element of one cell of a divided scene.
 
 use super::samples::{Sample, Samples};
 use super::sobol::hash;
@@ -24,6 +25,7 @@ pub struct Emitters {
     /// Up to which share of the area each piece goes.
     until: Vec<f64>,
     bounds: Aabb,
+    number: u32,
 }
 
 /// A triangle or parallelogram with its frame.
@@ -59,7 +61,11 @@ impl Emitters {
             let raised = (top - bottom).max(0.0);
             pieces(element).into_iter().map(move |piece| Piece { in_front: piece.in_front + raised, ..piece })
         };
-        let pieces: Vec<Piece> = elements.into_iter().flat_map(raised).collect();
+        let mut number = 0u32;
+        let numbered = elements.into_iter().inspect(|(element, _)| {
+            number = number.wrapping_add(number_at(element.centroid));
+        });
+        let pieces: Vec<Piece> = numbered.flat_map(raised).collect();
         let mut sum = 0.0;
         let areas = pieces.iter().map(Piece::area);
         let mut until: Vec<f64> = areas
@@ -70,7 +76,7 @@ impl Emitters {
             .collect();
         until.iter_mut().for_each(|share| *share /= sum);
         let corners = pieces.iter().flat_map(Piece::corners);
-        Self { bounds: Aabb::around(corners), pieces, until }
+        Self { bounds: Aabb::around(corners), pieces, until, number }
     }
 
     /// Whether it is one parallelogram.
@@ -81,6 +87,11 @@ impl Emitters {
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
         self.bounds
+    }
+
+    /// A number that follows from where its elements lie, in any order, and chooses its rays.
+    pub fn number(&self) -> u32 {
+        self.number
     }
 
     /// The outermost places on each of its pieces, between which all others lie.
@@ -101,7 +112,7 @@ impl Emitters {
         (piece.place(u, v), piece.frame[2])
     }
 
-    /// Writes the rays of the `number`th unknown.
+    /// Writes the rays that `number` chooses.
     #[inline(always)]
     pub fn rays(&self, samples: &Samples, number: u32, rays: &mut Vec<Ray>) {
         let seed = hash(number);
@@ -137,10 +148,7 @@ impl Emitters {
 
 /// The rays of a point on a surface, the centroid of this element; chosen by where it lies.
 pub fn rays_from(point: &Element, samples: &Samples) -> Vec<Ray> {
-    let seed = point.centroid.to_array().iter().fold(0, |seed, x| {
-        let bits = x.to_bits();
-        hash(seed ^ bits as u32 ^ hash((bits >> 32) as u32))
-    });
+    let seed = number_at(point.centroid);
     let [tangent, bitangent, normal] = frame(point.normal);
     let (sine, cosine) = turn(seed);
     let size = point.centroid.length().max(1.0);
@@ -151,6 +159,14 @@ pub fn rays_from(point: &Element, samples: &Samples) -> Vec<Ray> {
         Ray { origin, direction: tangent * x + bitangent * y + normal * z }
     };
     samples.set(seed).iter().map(ray).collect()
+}
+
+/// A number that follows from a place, to the bit.
+fn number_at(place: DVec3) -> u32 {
+    place.to_array().iter().fold(0, |number, x| {
+        let bits = x.to_bits();
+        hash(number ^ bits as u32 ^ hash((bits >> 32) as u32))
+    })
 }
 
 /// The sine and cosine of a turn of the azimuth.

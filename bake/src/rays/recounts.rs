@@ -245,8 +245,9 @@ impl pulp::NullaryFnOnce for Recount<'_> {
         let Self { view, unknown, escaped, scratch } = self;
         let Edit { before, after, column_after, .. } = view.edit;
         let surfaces = after.0.surfaces_of(view.instance[1]);
-        let near = surfaces.emitters(unknown).bounds().diagonal();
-        surfaces.emitters(unknown).rays(view.samples, unknown as u32, &mut scratch.rays);
+        let emitters = surfaces.emitters(unknown);
+        let near = emitters.bounds().diagonal();
+        emitters.rays(view.samples, emitters.number(), &mut scratch.rays);
         let mut change = Change::default();
         for (number, ray) in scratch.rays.iter().enumerate() {
             let passed = view.changed.iter().map(|bounds| entry(bounds, ray));

@@ -18,7 +18,7 @@ pub fn replicas<const N: usize>(
     let (near, placement) = (emitters.bounds().diagonal(), scenery.placement_of(instance));
     std::array::from_fn(|replica| {
         let mut rays = Vec::new();
-        emitters.rays(samples, unknown as u32 ^ (replica as u32) << 28, &mut rays);
+        emitters.rays(samples, emitters.number() ^ (replica as u32) << 28, &mut rays);
         let (mut sum, mut open) = (Rgb::BLACK, 0.0);
         for ray in &rays {
             let landing = scenery.land(instance, ray, near);

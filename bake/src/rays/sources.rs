@@ -181,7 +181,7 @@ struct Receiver<'a> {
 impl<'a> Receiver<'a> {
     fn new(scenery: &'a Scenery, instance: usize, unknown: usize) -> Self {
         let area = scenery.surfaces_of(instance).emitters(unknown);
-        Self { scenery, instance, number: unknown as u32, area, goes_on: true }
+        Self { scenery, instance, number: area.number(), area, goes_on: true }
     }
 
     #[inline(always)]
