@@ -129,7 +129,7 @@ fn a_repaint_of_a_group_reaches_parts_below_and_the_nearest_one_decides() {
         .iter()
         .map(|i| (i.name.as_str(), i.repainted.first().map(|repainted| repainted.reflectance[0])))
         .collect();
-    assert_eq!(reds, [("outer", Some(0.5)), ("inner", Some(0.25)), ("elsewhere", None)]);
+    assert_eq!(reds, [("elsewhere", None), ("inner", Some(0.25)), ("outer", Some(0.5))]);
     assert_eq!(scene.parts.len(), 1, "one part, however it is painted");
 }
 

@@ -1,5 +1,7 @@
-//! Flattens a document's node hierarchy: its nodes in the order of the file, each with its placement and its extras.
-//! Nothing here recurses, so a chain of a million nodes is read like any other file.
+//! Flattens a document's node hierarchy: its nodes in order of their names, each with its placement and its extras. So two files
+//! that differ in the order of nodes alone are the same scene to the bit: sums of light, and which of two surfaces at one
+//! place is met, follow the order of instances. Nothing here recurses, so a chain of a million nodes is read like any other
+//! file.
 
 use super::document::{Document, label};
 use super::extras::Extras;
@@ -8,6 +10,7 @@ use equilux_formats::Result;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::Node;
 use gltf::scene::Transform;
+use std::cmp::Ordering;
 use std::rc::Rc;
 
 /// A node with the properties it inherits from the nodes above it.
@@ -54,7 +57,9 @@ impl<'a> PlacedNode<'a> {
 pub(super) fn roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
     let roots = root_nodes(document);
     check_tree(document, &roots)?;
-    roots.into_iter().map(|node| above_roots(&node).child(document, node)).collect()
+    let roots: Result<Vec<_>> =
+        roots.into_iter().map(|node| above_roots(&node).child(document, node)).collect();
+    Ok(in_order(roots?))
 }
 
 fn above_roots<'a>(any: &Node<'a>) -> PlacedNode<'a> {
@@ -97,7 +102,23 @@ pub(super) fn subtree<'a>(document: &'a Document, start: PlacedNode<'a>) -> Resu
 }
 
 fn children<'a>(document: &Document, parent: &PlacedNode<'a>) -> Result<Vec<PlacedNode<'a>>> {
-    parent.node.children().map(|node| parent.child(document, node)).collect()
+    let children: Result<Vec<_>> = parent.node.children().map(|node| parent.child(document, node)).collect();
+    Ok(in_order(children?))
+}
+
+/// Nodes by name; of the same name, by placement, and then by what they show.
+fn in_order(mut nodes: Vec<PlacedNode>) -> Vec<PlacedNode> {
+    let placed = |node: &PlacedNode| node.placement.to_cols_array();
+    let shown = |PlacedNode { node, .. }: &PlacedNode| {
+        let mesh = node.mesh().map(|mesh| mesh.index());
+        (mesh, node.light().map(|light| light.index()), node.camera().map(|camera| camera.index()))
+    };
+    nodes.sort_by(|a, b| {
+        let places = placed(a).into_iter().zip(placed(b)).map(|(a, b)| a.total_cmp(&b));
+        let by_name = a.node.name().cmp(&b.node.name());
+        by_name.then(places.fold(Ordering::Equal, Ordering::then)).then_with(|| shown(a).cmp(&shown(b)))
+    });
+    nodes
 }
 
 fn root_nodes(document: &Document) -> Vec<Node<'_>> {
