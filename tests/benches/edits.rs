@@ -30,7 +30,7 @@ fn main() {
     job.settings.preparation.rows = RowMethod::Auto;
     job.settings.preparation.rays = rays_for_tolerance(tolerance);
     job.settings.goal.error = 1e-6;
-    job.outputs.exact_rows = ExactRows::About(0);
+    job.outputs.exact_rows = Some(ExactRows::About(0));
     job.outputs.pictures = Pictures::None;
     job.settings.warm = true;
     println!(

@@ -46,7 +46,7 @@ fn run(scene: &Scene, size: f64, rays: u32) -> Solved {
     let energy = &solved.outcome.convergence.energy;
     let bytes = std::process::Command::new("du").arg("-sb").arg(folder.path()).output().expect("du");
     let bytes: f64 = String::from_utf8_lossy(&bytes.stdout).split('\t').next().unwrap().parse().unwrap();
-    let noise = noise(&solved.equation, solved.radiosity(), &solved.irradiance, 256).expect("rays");
+    let noise = noise(&solved.equation, solved.radiosity(), &solved.irradiance).expect("rays");
     println!(
         "{elements} elements, {unknowns} unknowns, R = {rays}: {seconds:.2} CPU-s, peak {:.0} MB, cache {:.0} bytes a row; absorbed / \
          emitted {:.4}, noise {:.2} %, {} rounds",

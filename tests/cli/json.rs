@@ -82,6 +82,12 @@ fn assemble_prints_one_object_with_every_key() {
     let arguments = ["scene.glb", "--element-size", "1", "--tolerance", "0.01", "--json"];
     let noise = object(&arguments, "assemble")["error"]["noise"].clone();
     assert!(noise["rms_rel"].as_f64() > Some(0.0) && noise["rays"] == 256, "rows by rays: {noise}");
+    let audit =
+        object(&[&arguments[..], &["--exact-rows", "9"]].concat(), "assemble")["error"]["audit"].clone();
+    assert!(
+        audit["rows"] == 9 && audit["rms_rel"].as_f64() > Some(0.0),
+        "rows by rays beside exact ones: {audit}"
+    );
     let report = object(&[&arguments[..], &["--rows", "exact"]].concat(), "assemble");
     let missing: Vec<_> = KEYS.iter().filter(|key| report.pointer(key).is_none()).collect();
     assert!(missing.is_empty(), "missing {missing:?} in {report}");

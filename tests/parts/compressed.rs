@@ -54,10 +54,10 @@ fn covers(report: &Report, what: &str) {
 /// Checks a scene with all rows exact and with some, and returns the proved error of the first over its true error.
 fn exact_rows_tell_the_error(job: &Job, what: &str) -> f64 {
     let all = assembled(&changed(job.clone(), |job| {
-        job.outputs.exact_rows = ExactRows::All;
+        job.outputs.exact_rows = Some(ExactRows::All);
     }));
     let some = assembled(&changed(job.clone(), |job| {
-        job.outputs.exact_rows = ExactRows::About(256);
+        job.outputs.exact_rows = Some(ExactRows::About(256));
         job.outputs.verify = false;
     }));
     let verify = all.verify.as_ref().expect("asked for");
@@ -105,12 +105,12 @@ fn exact_rows_tell_the_error_of_a_furnished_room() {
 fn a_scene_of_fewer_rows_than_asked_for_has_them_all_exact_and_an_exact_one_none() {
     let workshop = Workshop::with(&rooms::furnished());
     let mut job = workshop.job(Division::Authored);
-    job.outputs.exact_rows = ExactRows::About(10_000);
+    job.outputs.exact_rows = Some(ExactRows::About(10_000));
     assert!(assembled(&job).error.exact_rows.is_none(), "rows beside an exact matrix");
     job.settings.preparation.resolution = Resolution::for_tolerance(0.3);
     let report = assembled(&job);
     assert_eq!(report.error.exact_rows.expect("rows").rows, report.elements);
-    job.outputs.exact_rows = ExactRows::About(0);
+    job.outputs.exact_rows = Some(ExactRows::About(0));
     let report = assembled(&job);
     assert!(report.error.exact_rows.is_none(), "rows where none were asked for");
     assert!(report.error.spread.is_some(), "a bound without rows");

@@ -18,7 +18,7 @@ fn verified(tolerance: f64) -> Report {
     job.scene = scene;
     job.settings.preparation.resolution = Resolution::for_tolerance(tolerance);
     job.outputs.verify = true;
-    job.outputs.exact_rows = ExactRows::About(0);
+    job.outputs.exact_rows = Some(ExactRows::About(0));
     let report = assembled(&job);
     assert_eq!(
         (report.parts.len(), report.blocks.self_baked),

@@ -1,9 +1,12 @@
 //! The light that rows by rays carry.
 
 use super::solved;
+use equilux_assemble::proof::audit::audit;
 use equilux_assemble::proof::noise::noise;
+use equilux_assemble::proof::sample::ExactRows;
 use equilux_assemble::solve::Solved;
 use equilux_bake::equilibrium::apply;
+use equilux_bake::monitor::Monitor;
 use equilux_formats::{Corners, LightKind, LightUnits, MaterialId, Part, PunctualLight, Rgb, Surface};
 use equilux_tests::curved::{sphere, torus};
 use equilux_tests::levels::furnished;
@@ -101,7 +104,7 @@ fn closed_rooms_absorb_what_lamps_emit() {
 fn noise_is_what_was_measured_and_has_no_mean() {
     let scene = scene_of(furnished(1));
     let (few, many) = (solved(&scene, 0.4, 64), solved(&scene, 0.4, 4096));
-    let measured = noise(&few.equation, few.radiosity(), &few.irradiance, 256).expect("rays").whole.over_mean;
+    let measured = noise(&few.equation, few.radiosity(), &few.irradiance).expect("rays").whole.over_mean;
     let (mut square, mut shift, mut sum) = (0.0, 0.0, 0.0);
     for ((element, a), b) in few.elements().iter().zip(&few.irradiance).zip(&many.irradiance) {
         square += element.area * (a[0] - b[0]).powi(2);
@@ -114,6 +117,27 @@ fn noise_is_what_was_measured_and_has_no_mean() {
     assert!((0.6..=1.6).contains(&(rms / measured)), "RMS {rms}, measured {measured}");
     // 4 % of noise in some 700 rows is .15 % of their mean, and reflections carry it on: three times that. Measured: .23 %.
     assert!(shift.abs() <= 5e-3, "mean shift {shift}");
+}
+
+/// Exact rows at places all over elements find what many rays find, differ from few rays by the noise of these, and see an error
+/// that rows share.
+#[test]
+fn an_audit_finds_the_noise_and_the_bias_of_rows_by_rays() {
+    let audited = |solved: &Solved, shift: f64| {
+        let irradiance: Vec<Rgb> = solved.irradiance.iter().map(|&h| h * (1.0 + shift)).collect();
+        let rows = ExactRows::About(300);
+        audit(&solved.equation, solved.radiosity(), &irradiance, rows, &Monitor::default()).expect("rays")
+    };
+    let scene = scene_of(furnished(1));
+    let (few, many) = (solved(&scene, 0.4, 64), solved(&scene, 0.4, 4096));
+    let measured = noise(&few.equation, few.radiosity(), &few.irradiance).expect("rays").whole.over_mean;
+    let (of_few, of_many) = (audited(&few, 0.0), audited(&many, 0.0));
+    // Light of lamps has noise of its own, and 16 places on an element see the edges of shadows roughly.
+    assert!((0.6..=2.0).contains(&(of_few.rms_over_mean / measured)), "{of_few:?}, measured {measured}");
+    assert!(of_many.rms_over_mean < 0.5 * of_few.rms_over_mean, "{of_many:?} beside {of_few:?}");
+    assert!(of_many.bias_over_mean.abs() <= 5e-3, "{of_many:?}");
+    let shifted = audited(&many, -0.05).bias_over_mean - of_many.bias_over_mean;
+    assert!((shifted + 0.05).abs() <= 1e-3, "{shifted} of 5 %");
 }
 
 /// A point light by shadow rays: in a closed black room all of its power arrives.

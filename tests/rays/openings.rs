@@ -37,7 +37,7 @@ fn holed(from: f64, hole: f64) -> Part {
 }
 
 fn named(solved: &Solved) -> DarkParts {
-    let noise = noise(&solved.equation, solved.radiosity(), &solved.irradiance, 256);
+    let noise = noise(&solved.equation, solved.radiosity(), &solved.irradiance);
     dark_parts(&solved.equation, &solved.equation.systems(), noise.as_ref())
 }
 

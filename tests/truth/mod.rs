@@ -75,7 +75,7 @@ fn assembled(scene: &Path) -> Table {
         rays: 256,
         local_solver: None,
     };
-    job.outputs.exact_rows = ExactRows::About(0);
+    job.outputs.exact_rows = Some(ExactRows::About(0));
     job.outputs.pictures = Pictures::None;
     job.outputs.elements = Some(elements.clone());
     let report = run(&job, &Monitor::default()).unwrap();

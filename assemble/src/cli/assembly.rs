@@ -35,10 +35,10 @@ pub struct AssemblyOptions {
     /// rounding [default: 1e-6, with --verify 0]
     #[arg(long, value_name = "BOUND", value_parser = values::error_bound)]
     error: Option<f64>,
-    /// Measure the error in about this many rows: of --tolerance with exact rows, in all of which a sharp bound is proved, and
-    /// the noise with rows by rays; 0 measures nothing
-    #[arg(long, value_name = "N|all", default_value = "256", value_parser = values::exact_rows)]
-    exact_rows: ExactRows,
+    /// Compare about this many rows with exact ones: rows by rays, or those with clusters of --rows exact, of which a sharp bound is
+    /// proved in all rows. By default 256 of the latter, and of rows by rays their noise alone; 0 measures nothing
+    #[arg(long, value_name = "N|all", value_parser = values::exact_rows)]
+    exact_rows: Option<ExactRows>,
     /// Start from the light of the last run with --warm instead of darkness, and store this run's light: fewer rounds
     /// after a small change. The bytes of the outputs then depend on earlier runs
     #[arg(long)]

@@ -128,7 +128,16 @@ impl Gather {
 
     /// Irradiance at points from reflecting surfaces and from the sky, W/m².
     pub fn reflected(&self, points: &[Element]) -> Vec<Rgb> {
-        let reflected = self.from(points, &self.scene, &self.reflected, self.resolution);
+        self.reflected_within(points, self.resolution)
+    }
+
+    /// The same with a form factor to each element, whatever way rows are computed.
+    pub fn exact_reflected(&self, points: &[Element]) -> Vec<Rgb> {
+        self.reflected_within(points, EXACT)
+    }
+
+    fn reflected_within(&self, points: &[Element], resolution: Resolution) -> Vec<Rgb> {
+        let reflected = self.from(points, &self.scene, &self.reflected, resolution);
         let sky = self.from(points, self.sky.as_slice(), &self.shining, EXACT);
         reflected.into_iter().zip(sky).map(|(a, b)| a + b).collect()
     }

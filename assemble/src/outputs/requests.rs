@@ -35,8 +35,9 @@ pub struct OutputRequests {
     pub elements: Option<PathBuf>,
     /// The path of a dependency file for build tools, if requested.
     pub depfile: Option<PathBuf>,
-    /// Number of receivers whose rows are computed exactly, to measure the error of clusters.
-    pub exact_rows: ExactRows,
+    /// Number of receivers whose rows are computed exactly, to measure the error of clusters or of rows by rays. By default the
+    /// former, and of the latter the noise alone; if none, nothing is measured.
+    pub exact_rows: Option<ExactRows>,
     /// Whether to solve the classic matrix too, and report the difference.
     pub verify: bool,
     /// Whether to report for each part and block whether it was computed, reused or skipped, and why.
@@ -53,7 +54,7 @@ impl Default for OutputRequests {
             points: None,
             elements: None,
             depfile: None,
-            exact_rows: ExactRows::default(),
+            exact_rows: None,
             verify: false,
             explain: false,
         }

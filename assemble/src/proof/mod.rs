@@ -1,7 +1,9 @@
 //! The error of a solution whose form factors represent clusters: radiosity varies within a cluster, which the
 //! exchange cannot detect. Input: the stored form factors and the solution. Output: a proved bound for every element,
-//! and residuals measured in exact rows.
+//! and residuals measured in exact rows. Rows by rays have no clusters: their noise is measured, and on request they are compared
+//! with exact rows.
 
+pub mod audit;
 pub mod enclosure;
 pub mod endless;
 pub mod exact_rows;

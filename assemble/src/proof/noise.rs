@@ -1,6 +1,7 @@
 //! The noise of rows by rays, measured: what independent sets of rays find differs as much as a row is uncertain (Owen 1995). No
 //! proof: the bound of the exchange holds for the rows as they were counted.
 
+use super::sample::evenly;
 use crate::equation::Equation;
 use crate::gather::outside::frame;
 use crate::gather::sky::SkyCells;
@@ -34,9 +35,12 @@ pub struct NoiseOfRows {
     pub over_mean: f64,
 }
 
-/// Measures the noise of about so many rows, evenly over the area, with this radiosity of all elements, W/m²; none if rows
-/// are not counted rays, or no light arrives.
-pub fn noise(equation: &Equation, radiosity: &[Rgb], irradiance: &[Rgb], rows: usize) -> Option<Noise> {
+/// Rows in which noise is measured.
+const ROWS: usize = 256;
+
+/// Measures the noise of some rows, evenly over the area, with this radiosity of all elements, W/m²; none if rows are not
+/// counted rays, or no light arrives.
+pub fn noise(equation: &Equation, radiosity: &[Rgb], irradiance: &[Rgb]) -> Option<Noise> {
     let placed = &equation.placed;
     let (scenery, rays) = (placed.scenery.as_ref()?, equation.rays()?);
     let along = equation.start_from(&placed.split(radiosity));
@@ -50,7 +54,7 @@ pub fn noise(equation: &Equation, radiosity: &[Rgb], irradiance: &[Rgb], rows: u
         Some(_) => Rgb::BLACK,
     };
     let samples = Samples::new(rays);
-    let chosen = evenly(equation, rows);
+    let chosen = evenly(equation, ROWS);
     let squares: Vec<Rgb> =
         chosen.par_iter().map(|&row| variance(replicas(scenery, &samples, row, light))).collect();
     let of = |which: Range<usize>, squares: Vec<Rgb>| {
@@ -78,24 +82,4 @@ fn variance(values: [Rgb; REPLICAS]) -> Rgb {
     let mean = values.iter().fold(Rgb::BLACK, |sum, &value| sum + value) / REPLICAS as f64;
     let squares = values.iter().fold(Rgb::BLACK, |sum, &value| sum + (value - mean) * (value - mean));
     squares / (REPLICAS - 1) as f64
-}
-
-/// About so many unknowns, at even steps of area.
-fn evenly(equation: &Equation, rows: usize) -> Vec<(usize, usize)> {
-    let systems = equation.systems();
-    let areas = || {
-        systems
-            .iter()
-            .enumerate()
-            .flat_map(|(k, system)| system.areas.iter().enumerate().map(move |(i, &area)| ((k, i), area)))
-    };
-    let step = areas().map(|(_, area)| area).sum::<f64>() / rows.max(1) as f64;
-    let mut passed = step / 2.0;
-    let steps = areas().filter(|(_, area)| {
-        passed += area;
-        let is_chosen = passed >= step;
-        passed %= step;
-        is_chosen
-    });
-    steps.map(|(place, _)| place).collect()
 }

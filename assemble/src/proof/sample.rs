@@ -5,11 +5,12 @@
 //! its clusters (systematic sampling with probability proportional to size: Cochran 1977, §11.9), so that large faces
 //! are drawn more often than small ones.
 
+use crate::equation::Equation;
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
 use std::ops::Range;
 
-/// Number of receivers that get exact rows.
+/// Number of receivers whose rows are compared with exact ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ExactRows {
     /// About this many, in whole receiver clusters; all if there are no more.
@@ -18,10 +19,16 @@ pub enum ExactRows {
     All,
 }
 
-impl Default for ExactRows {
-    /// Enough to estimate the error of clusters to a few percent of itself.
-    fn default() -> Self {
-        Self::About(256)
+impl ExactRows {
+    /// Enough to estimate an error to a few percent of itself.
+    pub const ENOUGH: Self = Self::About(256);
+
+    /// Their number, of so many.
+    pub fn of(self, rows: usize) -> usize {
+        match self {
+            Self::About(some) => some.min(rows),
+            Self::All => rows,
+        }
     }
 }
 
@@ -44,9 +51,9 @@ pub fn choose(
 ) -> Vec<ReceiverCluster> {
     let all: Vec<ReceiverCluster> = (0..systems.len()).flat_map(|k| clusters(placed, systems, k)).collect();
     let elements = placed.world.elements.len();
-    let rows = match requested {
-        ExactRows::About(0) => return vec![],
-        ExactRows::About(rows) if rows < elements => rows,
+    let rows = match requested.of(elements) {
+        0 => return vec![],
+        rows if rows < elements => rows,
         _ => return all,
     };
     let total: f64 = all.iter().map(|cluster| cluster.area).sum();
@@ -88,4 +95,24 @@ fn draw<'a>(own: &'a [usize], all: &'a [ReceiverCluster], step: f64) -> impl Ite
         }
         std::iter::repeat_n(cluster, ((next - first) / step).round() as usize)
     })
+}
+
+/// About so many unknowns, at even steps of area.
+pub fn evenly(equation: &Equation, rows: usize) -> Vec<(usize, usize)> {
+    let systems = equation.systems();
+    let areas = || {
+        systems
+            .iter()
+            .enumerate()
+            .flat_map(|(k, system)| system.areas.iter().enumerate().map(move |(i, &area)| ((k, i), area)))
+    };
+    let step = areas().map(|(_, area)| area).sum::<f64>() / rows.max(1) as f64;
+    let mut passed = step / 2.0;
+    let steps = areas().filter(|(_, area)| {
+        passed += area;
+        let is_chosen = passed >= step;
+        passed %= step;
+        is_chosen
+    });
+    steps.map(|(place, _)| place).collect()
 }

@@ -1,7 +1,7 @@
 //! The complete report as text, printed by `--verbose`: the paper's steps, the rounds, sums and sizes.
 
 use super::text::{NOT_CONVERGED, bytes, counted, left_out_line, percent, rgb};
-use super::{ErrorReport, Report, RoundReport, Verify};
+use super::{AuditReport, ErrorReport, Report, RoundReport, Verify};
 use crate::report::advice::Advice;
 
 impl Report {
@@ -152,6 +152,14 @@ impl ErrorReport {
                 "clusters: no bound on their error can be proved, because some surfaces reflect all light".to_owned(),
             ),
             None => {}
+        }
+        if let Some(AuditReport { rows, rms_rel, bias_rel, max_rel, .. }) = &self.audit {
+            lines.push(format!(
+                "beside exact rows: light of {rows} unknowns differs by {} of the mean in RMS, {:+.2} % on average, {} at most",
+                percent(*rms_rel),
+                100.0 * bias_rel,
+                percent(*max_rel),
+            ));
         }
         if let Some(rows) = &self.exact_rows {
             let whether = if rows.rows == elements { "all" } else { "a sample, not a proof" };

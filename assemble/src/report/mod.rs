@@ -160,6 +160,24 @@ pub struct ErrorReport {
     pub exact_rows: Option<ExactRowsReport>,
     /// The noise of rows by rays, if there are any.
     pub noise: Option<NoiseReport>,
+    /// Rows by rays beside exact ones, if that was asked for.
+    pub audit: Option<AuditReport>,
+}
+
+/// Irradiance by rays beside exact irradiance from the same radiosity; shares of the mean, the worst channel. A sample, and not
+/// proved.
+#[derive(Debug, Clone, Serialize)]
+pub struct AuditReport {
+    /// Number of unknowns.
+    pub rows: usize,
+    /// Root mean square difference.
+    pub rms_rel: f64,
+    /// Mean difference: below zero if rows by rays are too dark.
+    pub bias_rel: f64,
+    /// Largest difference.
+    pub max_rel: f64,
+    /// Wall time, seconds.
+    pub seconds: f64,
 }
 
 /// The noise of rows by rays, measured and not proved.

@@ -1,13 +1,15 @@
 //! Creates the report from the results of a run.
 
 use super::{
-    Blocks, Bytes, ErrorReport, ExactRowsReport, NoiseReport, PartReport, Report, RoundReport, Verify,
+    AuditReport, Blocks, Bytes, ErrorReport, ExactRowsReport, NoiseReport, PartReport, Report, RoundReport,
+    Verify,
 };
 use crate::equation::Equation;
 use crate::equation::coupling::Coupled;
 use crate::exchange::outcome::{Outcome, Round};
 use crate::exchange::system::InstanceSystem;
 use crate::placed_parts::PlacedParts;
+use crate::proof::audit::Audit;
 use crate::proof::noise::Noise;
 use crate::proof::{Proof, ResidualStatistics};
 use crate::report::fates::seen_instances;
@@ -48,6 +50,8 @@ pub struct ReportSources<'a> {
     pub proof: Option<&'a Proof>,
     /// The noise of rows by rays, if it was measured.
     pub noise: Option<&'a Noise>,
+    /// Rows by rays beside exact ones, if that was asked for.
+    pub audit: Option<Audit>,
     /// The classic solution, if requested.
     pub classic: Option<&'a Classic>,
 }
@@ -137,6 +141,7 @@ fn error(sources: &ReportSources) -> ErrorReport {
             spread: None,
             exact_rows: None,
             noise,
+            audit: sources.audit.map(audit),
         };
     };
     let measured = proof.measured.as_ref();
@@ -148,6 +153,17 @@ fn error(sources: &ReportSources) -> ErrorReport {
         spread: Some(most(&proof.spread)),
         exact_rows: measured.map(exact_rows),
         noise: None,
+        audit: None,
+    }
+}
+
+fn audit(audit: Audit) -> AuditReport {
+    AuditReport {
+        rows: audit.rows,
+        rms_rel: audit.rms_over_mean,
+        bias_rel: audit.bias_over_mean,
+        max_rel: audit.largest_over_mean,
+        seconds: audit.time.as_secs_f64(),
     }
 }
 

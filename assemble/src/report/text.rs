@@ -1,6 +1,6 @@
 //! The short report as text: the scene, its time, its error, notes, and the written files.
 
-use super::{ErrorReport, NoiseReport, Report, Verify};
+use super::{AuditReport, ErrorReport, NoiseReport, Report, Verify};
 use crate::report::advice::Advice;
 use equilux_formats::Rgb;
 use std::collections::BTreeMap;
@@ -118,13 +118,24 @@ impl ErrorReport {
                 rows.rows
             ),
             None => match &self.noise {
-                Some(NoiseReport { rays, rows, rms_rel }) => format!(
-                    "noise about {} of the mean (measured in {rows} rows of {rays} rays), {proved}",
-                    percent(*rms_rel)
-                ),
+                Some(NoiseReport { rays, rows, rms_rel }) => {
+                    let audit = self.audit.as_ref().map_or(String::new(), AuditReport::clause);
+                    format!(
+                        "noise about {} of the mean (measured in {rows} rows of {rays} rays){audit}, {proved}",
+                        percent(*rms_rel)
+                    )
+                }
                 None => proved,
             },
         }
+    }
+}
+
+impl AuditReport {
+    /// How far rows by rays are from exact ones.
+    fn clause(&self) -> String {
+        let Self { rows, rms_rel, bias_rel, .. } = self;
+        format!(", {} from {rows} exact rows ({:+.2} % on average)", percent(*rms_rel), 100.0 * bias_rel)
     }
 }
 

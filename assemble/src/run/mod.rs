@@ -13,7 +13,8 @@ use crate::exchange::listener::Unobserved;
 use crate::exchange::system::InstanceSystem;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{OutputRecord, RESULT, RunResults, write_all};
-use crate::proof::noise::{Noise, noise};
+use crate::proof::audit::audit;
+use crate::proof::noise::noise;
 use crate::proof::prove;
 use crate::proof::sample::ExactRows;
 use crate::report::Report;
@@ -23,7 +24,7 @@ use crate::report::process::{cpu_seconds, peak_rss};
 use crate::report::summary::{HIDDEN_SHELLS, ReportSources, summary};
 use crate::report::unlit::unlit_notes;
 use crate::solve::settings::SolveSettings;
-use crate::solve::{Solved, solve_prepared};
+use crate::solve::solve_prepared;
 use crate::verify::{Classic, classic};
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
@@ -53,16 +54,18 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let environment = settings.environment()?;
     let store = Store::open(&settings.cache)?;
     let element_size = prepared.element_size.to_string();
-    let has_clusters = prepared.resolution.opening > 0.0 && prepared.resolution.rays.is_none();
     let places = places.as_deref();
     let elements = prepared.elements();
-    monitor.expect(expected_work(requests, elements, has_clusters, atlas.as_ref(), places));
+    monitor.expect(expected_work(requests, (elements, prepared.resolution), atlas.as_ref(), places));
     let solved = solve_prepared(&scene, prepared, &environment, settings, &store, monitor, observer)?;
     let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let (equation, outcome) = (&solved.equation, &solved.outcome);
     let (placed, systems) = (&equation.placed, equation.systems());
-    let proof = prove(placed, &systems, outcome, requests.exact_rows, monitor);
-    let noise = measured_noise(&solved, requests.exact_rows);
+    let exact_rows = requests.exact_rows.unwrap_or(ExactRows::ENOUGH);
+    let proof = prove(placed, &systems, outcome, exact_rows, monitor);
+    let (radiosity, irradiance) = (solved.radiosity(), &solved.irradiance);
+    let noise = (exact_rows.of(1) > 0).then(|| noise(equation, radiosity, irradiance)).flatten();
+    let audit = requests.exact_rows.and_then(|rows| audit(equation, radiosity, irradiance, rows, monitor));
     let peak = peak_rss();
     let compare = || unless_stopped(classic(placed, &equation.driven_optics(), monitor));
     let classic = if requests.verify { compare()? } else { None };
@@ -88,6 +91,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
         outcome,
         proof: proof.as_ref(),
         noise: noise.as_ref(),
+        audit,
         classic: classic.as_ref(),
     };
     let mut report = Report { scene: scene.name.clone(), element_size, outputs, ..summary(&sources) };
@@ -103,16 +107,6 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let lights = notes_on_lights(settings, &scene, equation, &systems);
     report.notes = [scene.notes, lights, damage_notes(&store), report.notes, notes, last].concat();
     Ok(report)
-}
-
-/// The noise of rows by rays, if it is asked for and there are any.
-fn measured_noise(solved: &Solved, asked: ExactRows) -> Option<Noise> {
-    let rows = match asked {
-        ExactRows::About(0) => return None,
-        ExactRows::About(rows) => rows,
-        ExactRows::All => solved.elements().len(),
-    };
-    noise(&solved.equation, solved.radiosity(), &solved.irradiance, rows)
 }
 
 /// The scene, and its parts divided into elements. Fails where the job is not possible.
