@@ -5,8 +5,9 @@
 //! lights, colours and textures cost products.
 
 use super::atlas::{Atlas, Tile};
+use super::knots::Knots;
 use super::squares::Square;
-use super::traced_chart::{TracedChart, TracedRays, lattice};
+use super::traced_chart::{Mark, TracedChart, TracedRays, lattice};
 use crate::receivers::Receivers;
 use equilux_bake::oven::cached::cached;
 use equilux_formats::fingerprint::{Content, Digest, Manifest};
@@ -24,9 +25,9 @@ pub const RAYS: u32 = 512;
 const GROUP_TEXELS: usize = 1 << 16;
 
 /// The name of rows of texels in manifests and in the cache.
-const ROWS: &str = "rays of texels";
+const ROWS: &str = "rays of texels at knots";
 /// The name of how charts are divided in manifests and in the cache.
-const LAYOUT: &str = "layout of rays of texels";
+const LAYOUT: &str = "knots of rays of texels";
 /// The name of form factors of texels to lights with sharp shadows.
 const SHARP: &str = "light of texels";
 /// The name of form factors of the places that these rays see.
@@ -111,7 +112,7 @@ impl Group<'_> {
         })?;
         let layout = self.kept(LAYOUT, with_rays(LAYOUT), || {
             let marks = traced()?.iter().flat_map(|tile| &tile.marks);
-            let row = |&mark: &u8| if mark == 0 { vec![] } else { vec![(0, f64::from(mark))] };
+            let row = |&Mark(bits): &Mark| if bits == 0 { vec![] } else { vec![(0, f64::from(bits))] };
             Ok(block(1, marks.map(row)))
         })?;
         let lights = sharp.strengths.len();
@@ -185,34 +186,42 @@ impl Group<'_> {
         places: &HashMap<u32, Rgb>,
     ) -> Vec<Option<Rgb>> {
         let number = |[x, y]: [u32; 2]| (y * tile.size[0] + x) as usize;
-        let marks: Vec<u8> = (0..tile.texels())
-            .map(|texel| layout.row(start + texel).map(|(_, mark)| mark as u8).sum())
-            .collect();
+        let mark = |texel| Mark(layout.row(start + texel).map(|(_, bits)| bits as u8).sum());
+        let marks: Vec<Mark> = (0..tile.texels()).map(mark).collect();
         let mut along: Vec<Option<Rgb>> = vec![None; tile.texels()];
-        let (mut leaves, mut squares, mut depth) = (vec![], lattice(tile.size), 0);
-        while !squares.is_empty() {
-            let is_leaf = |square: &Square| {
-                square.is_smallest() || marks[number(square.low)] == TracedRays::leaf_at(depth)
-            };
-            let (done, divided): (Vec<Square>, Vec<Square>) = squares.into_iter().partition(is_leaf);
-            leaves.extend(done);
-            squares = divided.into_iter().flat_map(Square::parts).collect();
-            depth += 1;
-        }
+        let fill = |at, along: &mut Vec<Option<Rgb>>| {
+            let texel = number(at);
+            if marks[texel].is_open() && along[texel].is_none() {
+                along[texel] = Some(self.receivers.along(tile.instance, rays, start + texel, places));
+            }
+            along[texel].unwrap_or_default()
+        };
+        let (mut squares, mut depth) = (lattice(tile.size), 0);
         // From large to small: what lies on the edge of a larger one is interpolated there.
-        for square in leaves {
-            let corners = square.corners().map(|at| {
-                let number = number(at);
-                if along[number].is_none() && marks[number] > 0 {
-                    along[number] = Some(self.receivers.along(tile.instance, rays, start + number, places));
-                }
-                along[number].unwrap_or_default()
-            });
-            if square.has_inside() {
-                for at in square.texels() {
-                    along[number(at)].get_or_insert_with(|| square.interpolated(corners, at));
+        while !squares.is_empty() {
+            let is_leaf = |square: &Square| marks[number(square.low)].is_leaf(depth);
+            let (leaves, divided): (Vec<Square>, Vec<Square>) = squares.into_iter().partition(is_leaf);
+            let (smallest, divided): (Vec<Square>, Vec<Square>) =
+                divided.into_iter().partition(|square| square.is_smallest());
+            for leaf in leaves {
+                let is_inner = |at| marks[number(at)].is_whole();
+                let Some(knots) = Knots::of(leaf, is_inner) else { continue };
+                let known: Vec<Rgb> = knots.all().iter().map(|&at| fill(at, &mut along)).collect();
+                for at in leaf.texels() {
+                    if !is_inner(at) {
+                        fill(at, &mut along);
+                    } else if along[number(at)].is_none() {
+                        let weights = knots.weights(at);
+                        let sum = known.iter().zip(weights).fold(Rgb::BLACK, |sum, (&h, w)| sum + h * w);
+                        along[number(at)] = Some(sum);
+                    }
                 }
             }
+            smallest.iter().flat_map(|square| square.texels()).for_each(|at| {
+                fill(at, &mut along);
+            });
+            squares = divided.into_iter().flat_map(Square::parts).collect();
+            depth += 1;
         }
         let light = along.into_iter().enumerate().map(|(texel, along)| {
             along.map(|along| along + self.receivers.strength_of(light, start + texel))
@@ -225,7 +234,7 @@ impl Group<'_> {
 struct KeptRows {
     /// What rays of texels end on.
     rays: Rows,
-    /// Marks of texels: see [`TracedRays`].
+    /// Marks of texels: see [`Mark`].
     layout: Rows,
     /// Form factors to lights with sharp shadows.
     light: Rows,

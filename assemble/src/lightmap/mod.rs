@@ -18,6 +18,7 @@ pub mod estimate;
 mod field;
 pub mod grid;
 mod images;
+mod knots;
 mod least_squares;
 pub mod light;
 mod listing;

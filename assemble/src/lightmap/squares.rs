@@ -1,7 +1,5 @@
-//! Rectangles of texels between whose corners light is interpolated. They start as a lattice over a chart and are divided in
+//! Rectangles of texels in which light is interpolated. They start as a lattice over a chart and are divided in
 //! four. Which texels are corners says how a rectangle was divided, so nothing else needs to be kept.
-
-use std::ops::{Add, Mul};
 
 /// A rectangle of texels, both corners included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,12 +14,11 @@ pub struct Square {
 const SIDE: u32 = 32;
 
 impl Square {
-    /// The lattice over a rectangle of texels, which is at least one texel wide. Its cells are about as wide as high.
+    /// The lattice over a rectangle of texels.
     pub fn lattice(low: [u32; 2], high: [u32; 2]) -> Vec<Self> {
         let extent = [0, 1].map(|axis| high[axis] - low[axis]);
-        let side = extent[0].min(extent[1]).clamp(1, SIDE);
         let lines = [0, 1].map(|axis| {
-            let count = extent[axis].div_ceil(side).max(1);
+            let count = extent[axis].div_ceil(SIDE).max(1);
             let line =
                 move |k: u32| low[axis] + (u64::from(k) * u64::from(extent[axis]) / u64::from(count)) as u32;
             (0..count).map(move |k| [line(k), line(k + 1)])
@@ -33,24 +30,13 @@ impl Square {
     }
 
     /// Number of steps from texel to texel on each side.
-    fn steps(self) -> [u32; 2] {
+    pub fn steps(self) -> [u32; 2] {
         [0, 1].map(|axis| self.high[axis] - self.low[axis])
     }
 
     /// Whether it has no texels but its corners.
     pub fn is_smallest(self) -> bool {
         self.steps().into_iter().all(|steps| steps <= 1)
-    }
-
-    /// Whether it has texels in its inside; only these can be interpolated.
-    pub fn has_inside(self) -> bool {
-        self.steps().into_iter().all(|steps| steps > 1)
-    }
-
-    /// Its corner texels.
-    pub fn corners(self) -> [[u32; 2]; 4] {
-        let ([x0, y0], [x1, y1]) = (self.low, self.high);
-        [[x0, y0], [x1, y0], [x0, y1], [x1, y1]]
     }
 
     /// The texel at which its parts meet.
@@ -75,20 +61,6 @@ impl Square {
             let parts = columns.clone().into_iter();
             parts.map(move |[x0, x1]| Self { low: [x0, y0], high: [x1, y1] })
         })
-    }
-
-    /// Bilinear interpolation between the corners.
-    pub fn interpolated<T: Copy + Add<Output = T> + Mul<f64, Output = T>>(
-        self,
-        corners: [T; 4],
-        at: [u32; 2],
-    ) -> T {
-        let [s, t] = [0, 1].map(|axis| {
-            let steps = self.high[axis] - self.low[axis];
-            if steps == 0 { 0.0 } else { f64::from(at[axis] - self.low[axis]) / f64::from(steps) }
-        });
-        let [a, b, c, d] = corners;
-        (a * (1.0 - s) + b * s) * (1.0 - t) + (c * (1.0 - s) + d * s) * t
     }
 }
 

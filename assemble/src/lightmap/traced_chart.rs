@@ -6,12 +6,14 @@
 
 use super::atlas::{Atlas, Tile};
 use super::grid::MARGIN;
+use super::knots::Knots;
 use super::squares::Square;
 use super::texels::{Texel, Texels};
 use crate::receivers::Receivers;
 use crate::receivers::open_area::{OpenArea, PlanePiece};
 use crate::receivers::sharp::SharpRows;
 use equilux_bake::geometry::aabb::Aabb;
+use equilux_bake::geometry::polygon::{Polygon, part};
 use equilux_bake::rays::areas::AreaRow;
 use equilux_bake::rays::hemisphere::Emitters;
 use equilux_bake::rays::sources::Effort;
@@ -27,8 +29,13 @@ const WIDEST: f64 = 0.25;
 /// and in any case over this share where it is least.
 const ALWAYS: f64 = 0.1;
 
-/// Largest error of interpolation in the middle of a rectangle, with made-up radiosities between 0 and 1.
-const MAX_ERROR: f64 = 0.004;
+/// Largest error of interpolation in the middle of a rectangle of at least [`WIDE`] texels, with made-up radiosities between 0 and 1.
+/// It is about the noise of the rows.
+const MAX_ERROR: f64 = 0.006;
+
+/// In a rectangle of fewer texels than this the error may be larger, in proportion: there, it is a shadow that is blurred by a
+/// texel or two, and no square.
+const WIDE: f64 = 4.0;
 
 /// A rectangle is divided if anything stands above its inside within this share of its longer side.
 const ABOVE: f64 = 0.5;
@@ -54,21 +61,50 @@ pub struct TracedChart<'a> {
 pub struct TracedRays {
     /// The rows; those of texels that are interpolated, or not in the chart, have no rays.
     pub rows: Vec<AreaRow>,
-    /// 0 where nothing of the chart is open, 1 where something is, and more for the lowest texel of a rectangle that is
-    /// interpolated: see [`TracedRays::leaf_at`].
-    pub marks: Vec<u8>,
+    /// How their light is found.
+    pub marks: Vec<Mark>,
 }
 
-impl TracedRays {
-    /// The mark of a rectangle that is interpolated after so many divisions.
-    pub fn leaf_at(depth: u8) -> u8 {
-        depth + 2
+/// What is known of a texel: whether any of its area is open, whether all of it is, and, for the lowest texel of a rectangle that
+/// is interpolated, after how many divisions of the lattice that is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Mark(pub u8);
+
+impl Mark {
+    /// Nothing of the chart is open.
+    pub const NOTHING: Self = Self(0);
+    const OPEN: Self = Self(1);
+    const WHOLE: Self = Self(3);
+
+    /// Whether it has light.
+    pub fn is_open(self) -> bool {
+        self.0 & 1 == 1
+    }
+
+    /// Whether nothing covers it, so that it can be interpolated.
+    pub fn is_whole(self) -> bool {
+        self.0 & 2 == 2
+    }
+
+    fn add_leaf(&mut self, depth: u8) {
+        self.0 |= (depth + 1) << 2;
+    }
+
+    /// Whether it is the lowest of a rectangle that is interpolated after so many divisions.
+    pub fn is_leaf(self, depth: u8) -> bool {
+        self.0 >> 2 == depth + 1
     }
 }
 
 /// The lattice over the texels of a chart's rectangle, without its margin.
 pub fn lattice(size: [u32; 2]) -> Vec<Square> {
     Square::lattice([MARGIN; 2], size.map(|side| side - MARGIN - 1))
+}
+
+/// The largest error of interpolation in the middle of a rectangle.
+fn max_error(square: Square) -> f64 {
+    let steps = square.steps().into_iter().max().unwrap_or(1);
+    MAX_ERROR * (WIDE / f64::from(steps)).max(1.0)
 }
 
 /// The middle of a texel's square, in the plane of its first footprint.
@@ -139,32 +175,46 @@ impl<'a> TracedChart<'a> {
 
     /// Rows of rays. Fails if the monitor was stopped.
     pub fn rays(&self) -> Result<TracedRays> {
-        let marks = self.number.iter().map(|&number| u8::from(number != u32::MAX)).collect();
+        let mark = |&number: &u32| {
+            let open = self.open.get(number as usize).and_then(Option::as_ref);
+            open.map_or(Mark::NOTHING, |open| if open.is_whole { Mark::WHOLE } else { Mark::OPEN })
+        };
+        let marks = self.number.iter().map(mark).collect();
         let mut traced = TracedRays { rows: vec![AreaRow::default(); self.number.len()], marks };
         let (mut squares, mut depth) = (lattice(self.tile.size), 0);
         while !squares.is_empty() {
-            let regular: Vec<bool> = squares.par_iter().map(|square| self.is_regular(*square)).collect();
-            let needs = |(square, regular): (&Square, &bool)| {
-                (square.is_smallest() || *regular).then(|| square.corners())
-            };
-            self.trace(squares.iter().zip(&regular).filter_map(needs).flatten(), &mut traced.rows);
-            let small = |square: &Square| self.spacings(*square, &traced.rows)[1] <= ALWAYS;
-            let wide = |square: &Square| self.spacings(*square, &traced.rows)[0] > WIDEST;
-            let (leaves, open): (Vec<Square>, Vec<Square>) = {
-                let is_leaf = |(square, regular): &(Square, bool)| *regular && small(square);
-                let (leaves, open): (Vec<_>, Vec<_>) = squares.into_iter().zip(regular).partition(is_leaf);
-                let unsure = |(square, regular): &(Square, bool)| *regular && !wide(square);
-                let (unsure, divided): (Vec<_>, Vec<_>) = open.into_iter().partition(unsure);
-                let bare = |squares: Vec<(Square, bool)>| squares.into_iter().map(|(square, _)| square);
-                let unsure: Vec<Square> = bare(unsure).collect();
-                self.trace(unsure.iter().map(|square| square.centre()), &mut traced.rows);
-                let (smooth, rough): (Vec<Square>, Vec<Square>) =
-                    unsure.into_iter().partition(|square| self.error(*square, &traced.rows) <= MAX_ERROR);
-                (bare(leaves).chain(smooth).collect(), bare(divided).chain(rough).collect())
-            };
-            leaves.iter().for_each(|leaf| traced.marks[self.place(leaf.low)] = TracedRays::leaf_at(depth));
-            squares =
-                open.into_iter().filter(|square| !square.is_smallest()).flat_map(Square::parts).collect();
+            squares.retain(|square| square.texels().any(|at| self.at(at).is_some()));
+            let knots: Vec<Option<Knots>> = squares.par_iter().map(|square| self.knots(*square)).collect();
+            let (smallest, larger): (Vec<_>, Vec<_>) =
+                squares.into_iter().zip(knots).partition(|(square, _)| square.is_smallest());
+            self.trace(smallest.iter().flat_map(|(square, _)| square.texels()), &mut traced.rows);
+            let own = larger.iter().filter_map(|(_, knots)| knots.as_ref());
+            self.trace(own.flat_map(Knots::all).copied(), &mut traced.rows);
+            let (mut leaves, mut unsure, mut divided) = (vec![], vec![], vec![]);
+            for (square, knots) in larger {
+                let Some(knots) = knots else {
+                    divided.push(square);
+                    continue;
+                };
+                let [least, most] = self.spacings(square, &knots, &traced.rows);
+                if most <= ALWAYS {
+                    leaves.push(square);
+                } else if least > WIDEST {
+                    divided.push(square);
+                } else {
+                    unsure.push((square, self.middle_of(square, &knots), knots));
+                }
+            }
+            self.trace(unsure.iter().map(|(_, middle, _)| *middle), &mut traced.rows);
+            for (square, middle, knots) in unsure {
+                let is_smooth = self.error(&knots, middle, &traced.rows) <= max_error(square);
+                if is_smooth { leaves.push(square) } else { divided.push(square) }
+            }
+            let is_part = |at: &[u32; 2]| !traced.marks[self.place(*at)].is_whole();
+            let parts: Vec<[u32; 2]> = leaves.iter().flat_map(|leaf| leaf.texels()).filter(is_part).collect();
+            self.trace(parts.into_iter(), &mut traced.rows);
+            leaves.iter().for_each(|leaf| traced.marks[self.place(leaf.low)].add_leaf(depth));
+            squares = divided.into_iter().flat_map(Square::parts).collect();
             depth += 1;
             self.receivers.check_stopped()?;
         }
@@ -188,53 +238,82 @@ impl<'a> TracedChart<'a> {
         self.receivers.row(self.tile.instance, (area, self.tile.chart as u32), least)
     }
 
-    /// The longer side of a rectangle over the harmonic mean distance of rays, at the corners where this is least and most.
-    fn spacings(&self, square: Square, rows: &[AreaRow]) -> [f64; 2] {
-        let [a, b, c, _] = self.corners(square);
-        let longer = (b - a).length().max((c - a).length());
-        let near = square.corners().map(|at| longer * rows[self.place(at)].nearness);
-        [near.into_iter().fold(f64::INFINITY, f64::min), near.into_iter().fold(0.0, f64::max)]
+    /// The longer side of a rectangle over the harmonic mean distance of rays, at the knots where this is least and most.
+    fn spacings(&self, square: Square, knots: &Knots, rows: &[AreaRow]) -> [f64; 2] {
+        let texel = self.texel(knots.all()[0]);
+        let patch = &self.texels.patches[texel.footprints[0].patch];
+        let [across, down] = square.steps().map(f64::from);
+        let longer = (across * patch.du.length()).max(down * patch.dv.length());
+        let near = knots.all().iter().map(|&at| longer * rows[self.place(at)].nearness);
+        near.fold([f64::INFINITY, 0.0], |[least, most], near| [least.min(near), most.max(near)])
     }
 
-    /// The error of interpolation in the middle of a rectangle, with made-up radiosities.
-    fn error(&self, square: Square, rows: &[AreaRow]) -> f64 {
+    /// The texel that can be interpolated nearest to the middle of a rectangle's polygon.
+    fn middle_of(&self, square: Square, knots: &Knots) -> [u32; 2] {
+        let middle = knots.middle();
+        let off = |&[x, y]: &[u32; 2]| dvec2(f64::from(x), f64::from(y)).distance_squared(middle);
+        let inner = square.texels().filter(|&at| self.is_whole(at));
+        inner.min_by(|a, b| off(a).total_cmp(&off(b))).expect("knots are such texels")
+    }
+
+    /// The error of interpolation at a texel, with made-up radiosities.
+    fn error(&self, knots: &Knots, at: [u32; 2], rows: &[AreaRow]) -> f64 {
         let proxy = |at: [u32; 2]| self.receivers.proxy(&rows[self.place(at)]);
-        let (corners, middle) = (square.corners().map(proxy), proxy(square.centre()));
-        let predicted = |c: usize| square.interpolated(corners.map(|corner| corner[c]), square.centre());
-        (0..3).map(|c| (predicted(c) - middle[c]).abs()).fold(0.0, f64::max)
+        let (known, own) = (knots.all().iter().map(|&knot| proxy(knot)), proxy(at));
+        let mut off = own;
+        for (known, weight) in known.zip(knots.weights(at)) {
+            (0..3).for_each(|c| off[c] -= known[c] * weight);
+        }
+        off.into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// Whether all texels of a rectangle are open and lie in one plane, and nothing is above its inside.
-    fn is_regular(&self, square: Square) -> bool {
-        let normal = |texel: usize| self.texels.texels[texel].footprints[0].normal;
-        let Some(first) = self.at(square.low) else { return false };
+    fn texel(&self, at: [u32; 2]) -> &Texel {
+        &self.texels.texels[self.at(at).expect("it is open")]
+    }
+
+    fn is_whole(&self, at: [u32; 2]) -> bool {
+        self.at(at).is_some_and(|texel| self.open[texel].as_ref().is_some_and(|open| open.is_whole))
+    }
+
+    /// The texels between which a rectangle may be interpolated; none if its texels do not lie in one plane, or something is above
+    /// its inside.
+    fn knots(&self, square: Square) -> Option<Knots> {
+        let knots = Knots::of(square, |at| self.is_whole(at))?;
+        let normal = self.texel(knots.all()[0]).footprints[0].normal;
         let is_flat = |at: [u32; 2]| {
-            self.at(at).is_some_and(|texel| {
-                let mut footprints = self.texels.texels[texel].footprints.iter();
-                self.open[texel].as_ref().is_some_and(|open| open.is_whole)
-                    && footprints.all(|footprint| footprint.normal.dot(normal(first)) >= FLAT)
-            })
+            let footprints = self.at(at).map(|texel| &self.texels.texels[texel].footprints);
+            footprints.into_iter().flatten().all(|footprint| footprint.normal.dot(normal) >= FLAT)
         };
-        square.has_inside() && square.texels().all(is_flat) && !self.stands_above(square, normal(first))
+        (square.texels().all(is_flat) && !self.stands_above(&knots, normal)).then_some(knots)
     }
 
-    fn stands_above(&self, square: Square, normal: DVec3) -> bool {
+    fn stands_above(&self, knots: &Knots, normal: DVec3) -> bool {
         let placement = self.receivers.placed.instances[self.tile.instance].placement;
-        let corners = self.corners(square).map(|p| placement.transform_point3(p));
-        let (middle, [a, b, c, _]) = (corners.iter().sum::<DVec3>() / 4.0, corners);
         let normal = placement.transform_vector3(normal).normalize();
-        let longer = (b - a).length().max((c - a).length());
-        let inside = corners.map(|corner| corner.lerp(middle, self.atlas.texel_size / longer));
-        let above = inside.map(|corner| corner + normal * (ABOVE * longer));
-        let bounds = Aabb::around(inside.into_iter().chain(above));
-        let slack = 1e-6 * bounds.diagonal().max(middle.length());
-        let before = |corner: &DVec3| normal.dot(*corner - middle) > slack;
+        let corners = knots.all().iter().map(|&at| middle(&self.texels, self.texel(at)));
+        let corners: Vec<DVec3> = corners.map(|corner| placement.transform_point3(corner)).collect();
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let width = corners.iter().map(|corner| (*corner - middle).length()).fold(0.0, f64::max);
+        if width <= self.atlas.texel_size {
+            return false;
+        }
+        let inside = corners.iter().map(|corner| corner.lerp(middle, self.atlas.texel_size / width));
+        let inside: Vec<DVec3> = inside.collect();
+        let above = inside.iter().map(|corner| *corner + normal * (ABOVE * width));
+        let bounds = Aabb::around(inside.iter().copied().chain(above));
+        let slack = 1e-5 * bounds.diagonal().max(middle.length());
+        let height = |p: DVec3| normal.dot(p - middle) - slack;
+        let rises = |corners: &[DVec3]| {
+            let sides = (0..6).map(|side| (side / 2, if side % 2 == 0 { 1.0 } else { -1.0 }));
+            let inside = |rest: Option<Polygon>, (axis, sign): (usize, f64)| {
+                let bound = if sign > 0.0 { bounds.low[axis] } else { bounds.high[axis] };
+                let [inside, _] = part(&rest?, |p| sign * (p[axis] - bound));
+                inside
+            };
+            let [high, _] = part(corners, height);
+            sides.fold(high.filter(|high| high.iter().any(|&p| height(p) > 0.0)), inside).is_some()
+        };
         let world = &self.receivers.placed.world;
-        world.occluders().any(|other| !other.meets(&bounds), |occluder| occluder.corners.iter().any(before))
-    }
-
-    /// The middles of a rectangle's corner texels, in coordinates of the instance; all are open.
-    fn corners(&self, square: Square) -> [DVec3; 4] {
-        square.corners().map(|at| middle(&self.texels, &self.texels.texels[self.at(at).expect("it is open")]))
+        world.occluders().any(|other| !other.meets(&bounds), |occluder| rises(&occluder.corners))
     }
 }

@@ -206,6 +206,9 @@ impl<'a> Receivers<'a> {
 
     /// The rows of sharp light on these places.
     pub fn sharp_on_places(&self, places: &[u32]) -> SharpRows {
+        if self.sharp.strengths.is_empty() {
+            return vec![vec![]; places.len()];
+        }
         let instance_of = |&column: &u32| match self.columns.meaning(column as usize) {
             Column::Place(element, _) => self.instance_of(element),
             Column::Element(_) | Column::Sky(_) => usize::MAX,
