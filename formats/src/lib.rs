@@ -41,7 +41,7 @@ pub use clusters::ClusterTree;
 pub use error::{Error, Problem, Result, unless_stopped};
 pub use geometry::{Corners, Element, Face, Geometry, Optics, Patches, Tints};
 pub use ids::{FaceId, MaterialId, PartId};
-pub use part::{LocalSolver, Material, Part, Surface};
+pub use part::{LocalSolver, Material, Part, Surface, TexelChoice};
 pub use rgb::Rgb;
 pub use rows::Rows;
 pub use scene::{Camera, Instance, LightKind, LightUnits, PunctualLight, Repainted, Scene};

@@ -4,7 +4,7 @@ use crate::geometry::Corners;
 use crate::ids::MaterialId;
 use crate::rgb::Rgb;
 use crate::texture::{TexturedTriangle, Textures};
-use glam::{DAffine3, DVec2};
+use glam::{DAffine3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// A unit that is baked once and placed many times. The importer guarantees: every coordinate is finite, every surface is
@@ -36,9 +36,30 @@ pub struct Surface {
     /// Lightmap coordinates of its corners (TEXCOORD_1), if there are any; (0, 0) is the upper left corner. A
     /// triangle's last is repeated. They are an affine function of the corners.
     pub lightmap: Option<[DVec2; 4]>,
+    /// Normals of its corners towards its front, of any length, where the mesh stands for a smooth surface (NORMAL): they
+    /// differ from that of the face. A triangle's last is repeated.
+    pub normals: Option<[DVec3; 4]>,
     /// Whether its back faces into a closed shell without light inside: it is dark, and has no elements even if the
     /// material is double-sided.
     pub back_hidden: bool,
+    /// What the nodes below the part's root choose for its texels.
+    pub texels: TexelChoice,
+}
+
+/// An author's choice about the texels of a lightmap. What a surface leaves open, its instance decides.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TexelChoice {
+    /// Maximum size of a texel, metres of the scene (`extras.texel_size`).
+    pub size: Option<f64>,
+    /// Whether there are any (`extras.lightmap`).
+    pub any: Option<bool>,
+}
+
+impl TexelChoice {
+    /// This choice, completed by `other`.
+    pub fn or(self, other: Self) -> Self {
+        Self { size: self.size.or(other.size), any: self.any.or(other.any) }
+    }
 }
 
 impl Part {
@@ -51,28 +72,52 @@ impl Part {
 impl Surface {
     /// A surface without lightmap coordinates.
     pub fn new(corners: Corners, material: MaterialId) -> Self {
-        Self { corners, material, lightmap: None, back_hidden: false }
+        Self {
+            corners,
+            material,
+            lightmap: None,
+            normals: None,
+            back_hidden: false,
+            texels: TexelChoice::default(),
+        }
     }
 
     /// The same surface seen from behind.
     pub fn flipped(&self) -> Self {
+        let normals = self.normals.map(|normals| normals.map(|normal| -normal));
+        Self { normals, ..*self }.reversed()
+    }
+
+    /// The same surface with its corners in reverse order.
+    fn reversed(&self) -> Self {
         let count = self.corners.as_slice().len();
-        let lightmap = self.lightmap.map(|mut places| {
-            places[..count].reverse();
-            if count == 3 {
-                places[3] = places[2];
-            }
-            places
-        });
-        Self { corners: self.corners.flipped(), lightmap, ..*self }
+        Self {
+            corners: self.corners.flipped(),
+            lightmap: self.lightmap.map(|places| reversed(places, count)),
+            normals: self.normals.map(|normals| reversed(normals, count)),
+            ..*self
+        }
     }
 
     /// The surface after `placement`. A mirrored placement reverses the order of the corners, so that they stay
     /// counter-clockwise from the front.
     pub fn placed(&self, placement: DAffine3) -> Self {
-        let placed = Self { corners: self.corners.map(|corner| placement.transform_point3(corner)), ..*self };
-        if placement.matrix3.determinant() < 0.0 { placed.flipped() } else { placed }
+        let across = placement.matrix3.inverse().transpose();
+        let normals = self.normals.map(|normals| normals.map(|normal| (across * normal).normalize_or_zero()));
+        let normals = normals.filter(|normals| normals.iter().all(|&normal| normal != DVec3::ZERO));
+        let corners = self.corners.map(|corner| placement.transform_point3(corner));
+        let placed = Self { corners, normals, ..*self };
+        if placement.matrix3.determinant() < 0.0 { placed.reversed() } else { placed }
     }
+}
+
+/// The values of `count` corners in reverse order; a triangle's last is repeated.
+fn reversed<T: Copy>(mut values: [T; 4], count: usize) -> [T; 4] {
+    values[..count].reverse();
+    if count == 3 {
+        values[3] = values[2];
+    }
+    values
 }
 
 /// A material. Linear RGB, BT.709 primaries.

@@ -1,7 +1,7 @@
 //! A scene: parts, instances, cameras, and punctual lights.
 
 use crate::ids::{MaterialId, PartId};
-use crate::part::{Material, Part};
+use crate::part::{Material, Part, TexelChoice};
 use crate::rgb::Rgb;
 use glam::{DAffine3, DVec3};
 use std::path::PathBuf;
@@ -33,6 +33,13 @@ pub struct Scene {
     pub notes: Vec<String>,
 }
 
+impl Scene {
+    /// Makes normals those of faces everywhere.
+    pub fn flatten_normals(&mut self) {
+        self.parts.iter_mut().flat_map(|part| &mut part.surfaces).for_each(|surface| surface.normals = None);
+    }
+}
+
 /// A part placed in a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instance {
@@ -47,6 +54,8 @@ pub struct Instance {
     pub emission_scale: f64,
     /// Changed materials of this instance (`extras.materials`).
     pub repainted: Vec<Repainted>,
+    /// What its node and those above it choose for its texels.
+    pub texels: TexelChoice,
 }
 
 /// The changed reflectance and emission of a part's material in one instance.

@@ -41,7 +41,7 @@ fn main() {
     job.settings.preparation.resolution = Resolution::for_tolerance(number(3, 0.3));
     // Many rounds, for many updates.
     (job.settings.method, job.settings.goal.error) = (Method::Jacobi, 1e-12);
-    (job.outputs.exact_rows, job.outputs.pictures) = (ExactRows::About(0), Pictures::None);
+    (job.outputs.exact_rows, job.outputs.pictures) = (Some(ExactRows::About(0)), Pictures::None);
     let first = measured(&job, false);
     println!("{} elements, {} rounds; from nothing {:.1} s", first.elements, first.rounds, first.seconds);
     println!("{:>24}{:>24}{:>24}", "run, s", "run, CPU-s", "exchange, a s");

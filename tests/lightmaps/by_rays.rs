@@ -32,10 +32,15 @@ fn solved(scene: &Scene, cache: &Path) -> (Solved, Store) {
 
 /// The light of all texels of 0.1 m, by tile.
 fn texels(scene: &Scene, cache: &Path) -> (Atlas, Vec<Vec<Option<Rgb>>>) {
+    texels_of(scene, cache, 0.1)
+}
+
+/// The light of all texels of this size, by tile.
+pub fn texels_of(scene: &Scene, cache: &Path, size: f64) -> (Atlas, Vec<Vec<Option<Rgb>>>) {
     let (solved, store) = solved(scene, cache);
     let monitor = Monitor::default();
     let receivers = Receivers::new(scene, &solved, &store, 256, &monitor).expect("rows by rays");
-    let atlas = Atlas::new(scene, Some(0.1)).expect("an atlas");
+    let atlas = Atlas::new(scene, Some(size)).expect("an atlas");
     let light = irradiance(&receivers, &atlas).expect("not stopped");
     (atlas, light)
 }

@@ -38,7 +38,8 @@ pub fn baked(nodes: &[Node], units: Units) -> Workshop {
 fn divided(nodes: &[Node], units: Units, division: Division) -> Workshop {
     let workshop = Workshop::with(nodes);
     let mut job = workshop.job(division);
-    job.outputs.lightmaps = Some(LightmapOptions { texel_size: Some(0.05), units, directions: false });
+    job.outputs.lightmaps =
+        Some(LightmapOptions { texel_size: Some(0.05), units, ..LightmapOptions::default() });
     job.outputs.pictures = Pictures::None;
     assembled(&job);
     workshop
@@ -163,7 +164,7 @@ fn directions_point_to_where_light_comes_from() {
     let workshop = Workshop::with(&[Node::new("room", black), Node::new("lamp", lamp)]);
     let mut job = workshop.job(Division::Authored);
     job.outputs.lightmaps =
-        Some(LightmapOptions { texel_size: Some(0.1), units: Units::Irradiance, directions: true });
+        Some(LightmapOptions { texel_size: Some(0.1), directions: true, ..LightmapOptions::default() });
     job.outputs.pictures = Pictures::None;
     assembled(&job);
     let list = std::fs::read(workshop.path("out/scene/lightmaps.json")).expect("a list");

@@ -1,8 +1,8 @@
 //! A layout (TEXCOORD_1) may mirror any of its islands without a change of light.
 
 use super::{lookup, point_of, scene};
+use equilux_assemble::lightmap::LightmapOptions;
 use equilux_assemble::lightmap::atlas::{Atlas, Tile};
-use equilux_assemble::lightmap::{LightmapOptions, Units};
 use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::oven::prepare::{Division, Preparation, RowMethod};
@@ -135,8 +135,7 @@ fn a_readable_floor_under_an_even_sky_is_even() {
     let workshop = Workshop::new();
     Model::of(&[Node::new("floor", floor)]).write(&workshop.path("scene.glb"));
     let mut job = workshop.job(Division::Authored);
-    job.outputs.lightmaps =
-        Some(LightmapOptions { texel_size: Some(0.05), units: Units::Irradiance, directions: false });
+    job.outputs.lightmaps = Some(LightmapOptions { texel_size: Some(0.05), ..LightmapOptions::default() });
     job.settings.sky = Some(equilux_assemble::gather::sky::Sky::Uniform(Rgb([1.0; 3])));
     job.outputs.pictures = Pictures::None;
     let report = assembled(&job);

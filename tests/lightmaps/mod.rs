@@ -3,6 +3,8 @@
 mod authored;
 mod borders;
 mod by_rays;
+mod chosen;
+mod curved;
 pub mod files;
 mod handed;
 mod light;

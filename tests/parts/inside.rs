@@ -2,7 +2,7 @@
 
 use equilux_assemble::equation::interpenetration::{ElementsInside, elements_inside, sentences};
 use equilux_bake::world::World;
-use equilux_formats::{Geometry, Instance, Part, PartId};
+use equilux_formats::{Geometry, Instance, Part, PartId, TexelChoice};
 use equilux_tests::rooms::paint;
 use equilux_tests::shapes::{fine, joined, part, rectangle, room, solid};
 use glam::{DAffine3, DQuat, DVec3, dvec3};
@@ -25,6 +25,7 @@ impl Placed {
             placement: *placement,
             emission_scale: 1.0,
             repainted: vec![],
+            texels: TexelChoice::default(),
         };
         let world = World::new(
             geometries.iter().zip(&parts).map(|(geometry, (_, placement))| (geometry, *placement)),

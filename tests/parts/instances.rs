@@ -16,7 +16,7 @@ use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
 use equilux_bake::oven::prepare::PreparedPart;
 use equilux_bake::treecode::EXACT;
-use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Rgb, Scene, Store, Tints};
+use equilux_formats::{Instance, LocalSolver, Optics, Part, PartId, Rgb, Scene, Store, TexelChoice, Tints};
 use equilux_tests::model::{Model, Node};
 use equilux_tests::rooms::{lamp, paint};
 use equilux_tests::shapes::{coupling, joined, room, solid};
@@ -50,7 +50,14 @@ fn prepared(name: &str, part: &Part, size: f64) -> PreparedPart {
 }
 
 fn instance(name: &str, part: u32, placement: DAffine3) -> Instance {
-    Instance { name: name.into(), part: PartId(part), placement, emission_scale: 1.0, repainted: vec![] }
+    Instance {
+        name: name.into(),
+        part: PartId(part),
+        placement,
+        emission_scale: 1.0,
+        repainted: vec![],
+        texels: TexelChoice::default(),
+    }
 }
 
 /// Turned and scaled, perhaps mirrored, about the origin.

@@ -2,7 +2,7 @@
 //! of several sizes.
 
 use super::instances::floats;
-use equilux_assemble::lightmap::{LightmapOptions, Units};
+use equilux_assemble::lightmap::LightmapOptions;
 use equilux_assemble::outputs::requests::Pictures;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::gltf_import::import_scene;
@@ -49,7 +49,7 @@ fn a_room_is_the_same_in_any_units() {
         job.settings.preparation.element_size = Some(ElementSize::Metres(0.25));
         job.outputs.elements = Some(workshop.path("elements.csv"));
         job.outputs.lightmaps =
-            Some(LightmapOptions { texel_size: Some(0.25), units: Units::Irradiance, directions: false });
+            Some(LightmapOptions { texel_size: Some(0.25), ..LightmapOptions::default() });
         job.outputs.pictures = Pictures::None;
         assembled(&job);
         let table = Table::read(&workshop.path("elements.csv"));

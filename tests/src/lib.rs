@@ -15,6 +15,7 @@ pub mod program;
 pub mod rooms;
 pub mod script;
 pub mod shapes;
+pub mod smooth;
 pub mod table;
 pub mod truth;
 pub mod workshop;

@@ -6,7 +6,7 @@ use equilux_bake::treecode::{Audience, EXACT, Request, Resolution, block};
 use equilux_bake::world::World;
 use equilux_formats::texture::Textures;
 use equilux_formats::{
-    Corners, Geometry, Instance, Material, MaterialId, Part, PartId, Rgb, Rows, Scene, Surface,
+    Corners, Geometry, Instance, Material, MaterialId, Part, PartId, Rgb, Rows, Scene, Surface, TexelChoice,
 };
 use glam::{DAffine3, DVec3, dvec3};
 
@@ -137,6 +137,7 @@ pub fn scene_of(parts: Vec<Part>) -> Scene {
         placement: DAffine3::IDENTITY,
         emission_scale: 1.0,
         repainted: vec![],
+        texels: TexelChoice::default(),
     };
     Scene {
         name: "level".into(),

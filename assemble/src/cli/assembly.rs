@@ -60,6 +60,9 @@ pub struct AssemblyOptions {
     /// Maximum size of texels of lightmaps [default: results in about 1024 x 1024 texels]
     #[arg(long, value_name = "METRES", requires = "lightmaps", value_parser = values::texel_size)]
     texel_size: Option<f64>,
+    /// Maximum side of an image of lightmaps, a multiple of 4; what does not fit goes to further images
+    #[arg(long, value_name = "TEXELS", requires = "lightmaps", value_parser = values::atlas_size, default_value = "4096")]
+    atlas_size: u32,
     /// Units of the numbers in lightmap.exr
     #[arg(long, value_name = "UNITS", requires = "lightmaps", default_value = "irradiance")]
     lightmap_units: Units,
@@ -112,6 +115,7 @@ impl AssemblyOptions {
                 shot: None,
                 lightmaps: self.lightmaps.then_some(LightmapOptions {
                     texel_size: self.texel_size,
+                    atlas_size: self.atlas_size,
                     directions: self.lightmap_directions,
                     units: self.lightmap_units,
                 }),

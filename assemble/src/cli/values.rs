@@ -49,6 +49,13 @@ pub fn point(text: &str) -> Result<DVec3, String> {
     }
 }
 
+pub fn atlas_size(text: &str) -> Result<u32, String> {
+    match text.parse() {
+        Ok(side) if (64..=16384).contains(&side) && u32::is_multiple_of(side, 4) => Ok(side),
+        _ => Err("the side of an image is a multiple of 4 from 64 to 16384".into()),
+    }
+}
+
 pub fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').map(|(width, height)| [width.parse().ok(), height.parse().ok()]);
     match sides {

@@ -11,7 +11,7 @@ use super::grid::{Grid, MARGIN};
 use super::overlap::any_overlap;
 use super::pack::Spot;
 use super::patch::Map;
-use super::side::{SurfaceSide, sides};
+use super::side::{SurfaceSide, are_alike, sides};
 use super::texels::Texels;
 use equilux_bake::geometry::disjoint_sets::DisjointSets;
 use equilux_formats::{Corners, Part};
@@ -107,7 +107,8 @@ impl AuthoredLayout {
             }));
             self.stretch = self.stretch.max(map.patch.stretch());
         }
-        self.charts.push(Chart { direction: sides[0].normal, material: sides[0].material, sides, planes });
+        let SurfaceSide { normal: direction, material, texels, .. } = sides[0];
+        self.charts.push(Chart { direction, material, texels, sides, planes });
         self.maps.push(maps);
         Some(())
     }
@@ -194,7 +195,7 @@ fn flat(places: &[DVec2]) -> Corners {
     if corners.double_area_vector().z < 0.0 { corners.flipped() } else { corners }
 }
 
-/// Groups of sides of one material that touch each other both on the part and in the layout.
+/// Groups of sides of one material and one choice of texels that touch each other both on the part and in the layout.
 fn groups(sides: &[SurfaceSide]) -> Vec<Vec<usize>> {
     let mut sets = DisjointSets::new(sides.len());
     for contact in opposed_contacts(sides) {
@@ -203,7 +204,7 @@ fn groups(sides: &[SurfaceSide]) -> Vec<Vec<usize>> {
             let [p, q] = [a, b].map(|side| place_on(&sides[side], end));
             p.zip(q).is_some_and(|(p, q)| (p - q).abs().max_element() <= POSITION_TOLERANCE)
         });
-        if together && sides[a].material == sides[b].material {
+        if together && are_alike(&sides[a], &sides[b]) {
             sets.join(a, b);
         }
     }

@@ -10,6 +10,7 @@ use super::squares::Square;
 use super::traced_chart::{Mark, TracedChart, TracedRays, lattice};
 use crate::receivers::Receivers;
 use equilux_bake::oven::cached::cached;
+use equilux_bake::oven::placed_keys::{PLACE_LIGHT, TEXEL_LAYOUT, TEXEL_LIGHT, TEXEL_RAYS, texel_block};
 use equilux_formats::fingerprint::{Content, Digest, Manifest};
 use equilux_formats::rows::{CountedRow, Precision, RowGroup};
 use equilux_formats::{Result, Rgb, Rows};
@@ -23,15 +24,6 @@ pub const RAYS: u32 = 512;
 
 /// Charts are kept together up to this many texels.
 const GROUP_TEXELS: usize = 1 << 16;
-
-/// The name of rows of texels in manifests and in the cache.
-const ROWS: &str = "rays of texels at knots";
-/// The name of how charts are divided in manifests and in the cache.
-const LAYOUT: &str = "knots of rays of texels";
-/// The name of form factors of texels to lights with sharp shadows.
-const SHARP: &str = "light of texels";
-/// The name of form factors of the places that these rays see.
-const PLACES: &str = "light of places near texels";
 
 /// For each tile the irradiance of its texels, W/m²; none for those without light: outside of the chart, or covered with all
 /// of the chart. Fails if the monitor was stopped meanwhile.
@@ -105,25 +97,25 @@ impl Group<'_> {
         };
         let with_rays =
             |what: &str| self.manifest(what).setting("rays of a texel", self.receivers.samples.rays());
-        let rays = self.kept(ROWS, with_rays(ROWS), || {
+        let rays = self.kept(TEXEL_RAYS, with_rays(TEXEL_RAYS), || {
             let rows = traced()?.iter().flat_map(|tile| &tile.rows);
             let rows = rows.map(|row| CountedRow { counts: row.counts.clone(), rays: row.rays });
             Ok(Rows::from_counts(columns.count(), rows))
         })?;
-        let layout = self.kept(LAYOUT, with_rays(LAYOUT), || {
+        let layout = self.kept(TEXEL_LAYOUT, with_rays(TEXEL_LAYOUT), || {
             let marks = traced()?.iter().flat_map(|tile| &tile.marks);
             let row = |&Mark(bits): &Mark| if bits == 0 { vec![] } else { vec![(0, f64::from(bits))] };
             Ok(block(1, marks.map(row)))
         })?;
         let lights = sharp.strengths.len();
         let with_lights = |manifest: Manifest| manifest.digest("lights", sharp.digest());
-        let light = self.kept(SHARP, with_lights(self.manifest(SHARP)), || {
+        let light = self.kept(TEXEL_LIGHT, with_lights(self.manifest(TEXEL_LIGHT)), || {
             let mut charts = charts()?.iter();
             let rows = self.each_tile(|_| Ok(charts.next().expect("one for each tile").sharp()))?;
             Ok(block(lights, rows.into_iter().flatten()))
         })?;
         let places = self.receivers.places_of(&rays);
-        let on_places = self.kept(PLACES, with_lights(with_rays(PLACES)), || {
+        let on_places = self.kept(PLACE_LIGHT, with_lights(with_rays(PLACE_LIGHT)), || {
             Ok(block(lights, self.receivers.sharp_on_places(&places).into_iter()))
         })?;
         let sent = self.receivers.sent_by_places(&places, &on_places);
@@ -148,7 +140,7 @@ impl Group<'_> {
 
     fn kept(&self, what: &str, manifest: Manifest, make: impl FnOnce() -> Result<Rows>) -> Result<Rows> {
         let coupler = &self.receivers.coupler;
-        let name = coupler.name(self.instance(), &format!("{what} {}", self.number));
+        let name = coupler.name(self.instance(), &texel_block(what, self.number));
         Ok(cached(coupler.store, &name, &manifest, coupler.monitor, make)?.0)
     }
 
@@ -164,10 +156,14 @@ impl Group<'_> {
             let planes: Vec<u32> = chart.planes.iter().map(|&plane| plane as u32).collect();
             content =
                 content.bytes([tile.chart as u32, tile.size[0], tile.size[1]].map(u32::to_le_bytes).concat());
+            // Rays that are shorter than a texel see places as large as half of one.
+            content = content.f64s(&[self.atlas.texel_size_of(tile)]);
             content = content.bytes(planes.into_iter().flat_map(u32::to_le_bytes).collect::<Vec<u8>>());
             for side in &chart.sides {
                 let corners = side.corners.as_slice().iter().flat_map(|corner| corner.to_array());
                 content = content.f64s(&corners.collect::<Vec<f64>>());
+                let normals = side.normals.into_iter().flatten().flat_map(|normal| normal.to_array());
+                content = content.f64s(&normals.collect::<Vec<f64>>());
             }
             for patch in grid.patches() {
                 let vectors = [patch.origin, patch.du, patch.dv, patch.normal];

@@ -1,4 +1,4 @@
-//! Charts: connected sides of one material that can be laid out in a plane together. Input: a part. Output: its
+//! Charts: connected sides of one material, and of one choice of texels, that can be laid out in a plane together. Input: a part. Output: its
 //! charts; each side belongs to exactly one of them.
 //!
 //! A chart grows from its largest side over smooth contacts, as long as sides face the chart's direction to within
@@ -7,9 +7,9 @@
 
 use super::contacts::{MAX_SMOOTH_ANGLE, smooth_contacts};
 use super::overlap::any_overlap;
-use super::side::{SurfaceSide, sides};
+use super::side::{SurfaceSide, are_alike, sides};
 use equilux_bake::geometry::planes;
-use equilux_formats::{Face, MaterialId, Part};
+use equilux_formats::{Face, MaterialId, Part, TexelChoice};
 use glam::DVec3;
 
 /// Sides that share a region of the lightmap.
@@ -19,6 +19,8 @@ pub struct Chart {
     pub direction: DVec3,
     /// The material of all sides.
     pub material: MaterialId,
+    /// The author's choice about the texels of all sides.
+    pub texels: TexelChoice,
     /// The sides.
     pub sides: Vec<SurfaceSide>,
     /// For each side the index of its plane, counted from 0 without gaps.
@@ -64,7 +66,7 @@ impl Growth {
         let mut neighbours = vec![Vec::new(); sides.len()];
         for contact in smooth_contacts(&sides) {
             let [a, b] = contact.sides;
-            if sides[a].material == sides[b].material {
+            if are_alike(&sides[a], &sides[b]) {
                 neighbours[a].push(b);
                 neighbours[b].push(a);
             }
@@ -124,6 +126,7 @@ impl Growth {
         Chart {
             direction: first.normal,
             material: first.material,
+            texels: first.texels,
             sides: members.iter().map(|&side| self.sides[side]).collect(),
             planes: members.iter().map(number).collect(),
         }

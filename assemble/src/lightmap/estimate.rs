@@ -5,7 +5,7 @@ use super::authored::AuthoredLayout;
 use super::bounds::Bounds;
 use super::chart::{Chart, charts};
 use super::grid::MARGIN;
-use equilux_formats::{Part, Scene};
+use equilux_formats::{Part, Scene, TexelChoice};
 use std::sync::Arc;
 
 /// Default number of texels of an atlas.
@@ -37,6 +37,52 @@ impl PartCharts {
     }
 }
 
+/// The rectangle of a chart, or of an author's layout.
+struct Rectangle {
+    /// Metres in the part's units.
+    extent: [f64; 2],
+    /// Texels beyond its extent.
+    beyond: f64,
+    texels: TexelChoice,
+}
+
+impl Rectangle {
+    fn of_part(part: &PartCharts) -> Vec<Self> {
+        let margins = f64::from(2 * MARGIN);
+        match (&part.authored, &part.own) {
+            (Some(authored), _) => {
+                let sheet = || Self {
+                    extent: [authored.stretch; 2],
+                    beyond: margins,
+                    texels: authored.charts.first().map(|chart| chart.texels).unwrap_or_default(),
+                };
+                (0..authored.sheets()).map(|_| sheet()).collect()
+            }
+            (None, own) => {
+                let rectangle = |chart: &Chart| Self {
+                    extent: Bounds::of(chart).extent.to_array(),
+                    beyond: margins + 1.0,
+                    texels: chart.texels,
+                };
+                own.iter().flat_map(|charts| charts.iter()).map(rectangle).collect()
+            }
+        }
+    }
+
+    /// Its texels as a polynomial in 1/t, in an instance of this scale with this choice. Texels of a size that the author chose
+    /// are a constant.
+    fn coefficients(&self, scale: f64, choice: TexelChoice) -> [f64; 3] {
+        let TexelChoice { size, any } = self.texels.or(choice);
+        let ([width, height], beyond) = (self.extent.map(|side| side * scale), self.beyond);
+        let [a, b, c] = [beyond * beyond, beyond * (width + height), width * height];
+        match size {
+            _ if any == Some(false) => [0.0; 3],
+            Some(size) => [a + b / size + c / (size * size), 0.0, 0.0],
+            None => [a, b, c],
+        }
+    }
+}
+
 /// Texels that charts need: with texels of t metres Σ (w/t + m)(h/t + m), where m is the number of texels that a
 /// chart needs beyond its extent; a polynomial in 1/t.
 #[derive(Debug)]
@@ -47,33 +93,15 @@ pub struct Estimate {
 impl Estimate {
     /// The estimate for the instances of `scene`.
     pub fn of(scene: &Scene, parts: &[PartCharts]) -> Self {
-        let parts: Vec<[f64; 3]> = parts.iter().map(Self::of_part).collect();
+        let parts: Vec<Vec<Rectangle>> = parts.iter().map(Rectangle::of_part).collect();
         let mut coefficients = [0.0; 3];
         for instance in &scene.instances {
-            let ([a, b, c], scale) = (parts[instance.part.index()], instance.scale());
-            coefficients[0] += a;
-            coefficients[1] += b * scale;
-            coefficients[2] += c * scale * scale;
+            for rectangle in &parts[instance.part.index()] {
+                let own = rectangle.coefficients(instance.scale(), instance.texels);
+                (0..3).for_each(|k| coefficients[k] += own[k]);
+            }
         }
         Self { coefficients }
-    }
-
-    fn of_part(part: &PartCharts) -> [f64; 3] {
-        let rectangle = |width: f64, height: f64, beyond: f64| {
-            [beyond * beyond, beyond * (width + height), width * height]
-        };
-        let margins = f64::from(2 * MARGIN);
-        let rectangles: Vec<[f64; 3]> = match (&part.authored, &part.own) {
-            (Some(authored), _) => {
-                vec![rectangle(authored.stretch, authored.stretch, margins); authored.sheets()]
-            }
-            (None, own) => {
-                let extents =
-                    own.iter().flat_map(|charts| charts.iter()).map(|chart| Bounds::of(chart).extent);
-                extents.map(|extent| rectangle(extent.x, extent.y, margins + 1.0)).collect()
-            }
-        };
-        rectangles.into_iter().fold([0.0; 3], |sum, one| [0, 1, 2].map(|i: usize| sum[i] + one[i]))
     }
 
     /// Number of texels of this size, metres, that images will have.

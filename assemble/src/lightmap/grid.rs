@@ -12,7 +12,7 @@ use super::chart::Chart;
 use super::patch::{Map, Patch};
 use glam::{DVec2, DVec3, dvec2};
 
-/// Width of the margin around a chart, texels, filled from its nearest texels. Two charts are twice as far apart.
+/// Width of the margin around a chart, texels. Two charts are twice as far apart.
 pub const MARGIN: u32 = 3;
 
 /// The positions of a chart's texels, in the coordinates of its part.

@@ -1,7 +1,8 @@
 //! A lightmap as images: half-float EXR for engines, 8-bit PNG for viewing and for models.
 
+use super::Lightmap;
 use super::atlas::Tile;
-use super::{Holds, Lightmap};
+use super::dilate::NEVER;
 use crate::picture::canvas::srgb;
 use crate::picture::exposure::Exposure;
 use equilux_formats::{MaterialId, Rgb};
@@ -61,19 +62,18 @@ pub fn half_scale(most: f64) -> f64 {
 }
 
 /// One image of the lightmap: for each texel `value` of its tile and its index in the tile, otherwise `empty`.
-/// Rectangles of an author's layout may overlap: texels with part of a chart take precedence over margins.
+/// Rectangles of an author's layout may overlap: each texel belongs to the nearest chart.
 fn image<T: Copy>(lightmap: &Lightmap, image: usize, empty: T, value: impl Fn(usize, usize) -> T) -> Vec<T> {
     let [width, height] = lightmap.atlas.images[image].map(|side| side as usize);
-    let mut texels = vec![empty; width * height];
+    let (mut texels, mut nearest) = (vec![empty; width * height], vec![NEVER; width * height]);
     let here = |(_, tile): &(usize, &Tile)| tile.spot.image == image;
-    for held in [Holds::Margin, Holds::Chart] {
-        for (number, tile) in lightmap.tiles.iter().enumerate().filter(here) {
-            let [left, top] = tile.spot.at.map(|at| at as usize);
-            let columns = tile.size[0] as usize;
-            let holds = lightmap.holds[number].iter().enumerate();
-            for (index, _) in holds.filter(|(_, holds)| **holds == held) {
-                let (row, column) = (index / columns, index % columns);
-                texels[(top + row) * width + left + column] = value(number, index);
+    for (number, tile) in lightmap.tiles.iter().enumerate().filter(here) {
+        let [left, top] = tile.spot.at.map(|at| at as usize);
+        let columns = tile.size[0] as usize;
+        for (index, &distance) in lightmap.distances[number].iter().enumerate() {
+            let texel = (top + index / columns) * width + left + index % columns;
+            if distance < nearest[texel] {
+                (texels[texel], nearest[texel]) = (value(number, index), distance);
             }
         }
     }

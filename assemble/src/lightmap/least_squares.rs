@@ -1,9 +1,10 @@
-//! Finds the smallest change of values that makes given differences vanish. Input: values, rows c_k of weights whose
-//! sums over the values should be zero, and pairs of adjacent values. Output: the change.
+//! Finds the smallest change of values that makes given differences vanish. Input: values and how freely each may change, rows c_k
+//! of weights whose sums over the values should be zero, and pairs of adjacent values. Output: the change.
 //!
-//! For values v, the change y minimises |y|² + μ Σ_(i, j) (y_i − y_j)² + λ Σ_k (c_k·(v + y))²: it is small and
-//! smooth, so that the detail of v is preserved. With D the rows of pairs, (I + μDᵀD + λCᵀC) y = −λCᵀC v is solved by
-//! conjugate gradients (Hestenes & Stiefel 1952), sequentially, so that the bits do not depend on threads.
+//! For values v of freedom s, the change y minimises Σ (y_i / s_i)² + μ Σ_(i, j) (y_i − y_j)² + λ Σ_k (c_k·(v + y))²: it is
+//! small and smooth, so that the detail of v is preserved. With y = S z and D the rows of pairs,
+//! (I + S (μDᵀD + λCᵀC) S) z = −λ S CᵀC v is solved by conjugate gradients (Hestenes & Stiefel 1952), sequentially, so that the
+//! bits do not depend on threads.
 
 /// A row: indices of values, with weights.
 pub type DifferenceRow = Vec<(usize, f64)>;
@@ -17,17 +18,21 @@ const RESIDUAL_REDUCTION: f64 = 1e-7;
 /// Maximum number of steps, more than a system of this stiffness needs.
 const MAX_STEPS: usize = 1000;
 
-/// The change y of the values `v`.
-pub fn correction(rows: &[DifferenceRow], pairs: &[[usize; 2]], v: &[f64]) -> Vec<f64> {
-    let apply = |x: &[f64]| {
-        let mut y = x.to_vec();
-        add_smoothness(pairs, x, &mut y);
-        add_agreement(rows, x, &mut y);
+/// The change y of the values `v`, which are as free as `freedom` says, from 0 to 1.
+pub fn correction(rows: &[DifferenceRow], pairs: &[[usize; 2]], freedom: &[f64], v: &[f64]) -> Vec<f64> {
+    let scaled = |x: &[f64]| -> Vec<f64> { x.iter().zip(freedom).map(|(x, s)| x * s).collect() };
+    let apply = |z: &[f64]| {
+        let (x, mut forces) = (scaled(z), vec![0.0; z.len()]);
+        add_smoothness(pairs, &x, &mut forces);
+        add_agreement(rows, &x, &mut forces);
+        let mut y = scaled(&forces);
+        add(&mut y, 1.0, z);
         y
     };
     let mut y = vec![0.0; v.len()];
     let mut residual = vec![0.0; v.len()];
     add_agreement(rows, v, &mut residual);
+    residual = scaled(&residual);
     residual.iter_mut().for_each(|r| *r = -*r);
     let mut direction = residual.clone();
     let mut square = dot(&residual, &residual);
@@ -44,7 +49,7 @@ pub fn correction(rows: &[DifferenceRow], pairs: &[[usize; 2]], v: &[f64]) -> Ve
         direction.iter_mut().zip(&residual).for_each(|(d, r)| *d = r + next / square * *d);
         square = next;
     }
-    y
+    scaled(&y)
 }
 
 /// y += μDᵀD x.

@@ -48,14 +48,23 @@ use texels::Texels;
 use tints::TintTarget;
 
 /// Options of lightmaps.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightmapOptions {
     /// The size of texels, metres; none for a size that suits the scene.
     pub texel_size: Option<f64>,
+    /// Maximum side of an image, texels, a multiple of 4.
+    pub atlas_size: u32,
     /// The units of the numbers in the images.
     pub units: Units,
     /// Whether to write the mean directions of light, too.
     pub directions: bool,
+}
+
+impl Default for LightmapOptions {
+    /// Images of at most 4096 × 4096 texels; all graphics cards of the last ten years support them.
+    fn default() -> Self {
+        Self { texel_size: None, atlas_size: 4096, units: Units::default(), directions: false }
+    }
 }
 
 /// A scene with light on its surfaces.
@@ -71,24 +80,16 @@ pub struct Lightmap<'a> {
     pub irradiance: Vec<Vec<Rgb>>,
     /// The mean direction of the light of each of these texels, if requested: see [`Lightmap::with_directions`].
     pub directions: Option<Vec<Vec<[f64; 3]>>>,
-    /// The contents of each of these texels.
-    holds: Vec<Vec<Holds>>,
+    /// How many texels each of these is away from the value that it has, [`dilate::NEVER`] for those without one.
+    distances: Vec<Vec<u32>>,
     /// The materials of each instance.
     materials: Vec<Vec<Material>>,
     /// The factors of textures on reflectance and emission of each texel, if there are any.
     tints: Option<[Vec<Vec<Rgb>>; 2]>,
 }
 
-/// The contents of a texel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Holds {
-    /// Nothing; the chart is not near.
-    Nothing,
-    /// Light for lookups next to the chart.
-    Margin,
-    /// Part of the chart.
-    Chart,
-}
+/// Light below this share of the brightest is darkness: the exchange ends when it is right to a tenth of that.
+const DARK: f64 = 1e-5;
 
 /// Cost of a texel, in rows of form factors.
 pub const ROWS_PER_TEXEL: f64 = 0.1;
@@ -116,21 +117,24 @@ impl<'a> Lightmap<'a> {
         monitor: &Monitor,
     ) -> Result<Self> {
         let tiles = atlas.tiles();
-        let (mut irradiance, holds) = with_margins(values, &tiles);
+        // What nothing shines on, such as the foot of a crate that is sunk into a floor, does not darken what something covers.
+        let brightest = values.iter().flatten().flatten().flatten().fold(0.0, |most: f64, &h| most.max(h));
+        let (mut irradiance, distances) =
+            extended(values, &tiles, |light| light.iter().any(|&h| h > DARK * brightest));
         let mut tints = None;
         if let Some(coats) = tints::coats(scene) {
             let tint = |of: TintTarget| {
                 let tint = |texels: &Texels| tints::tints(scene, &coats, texels, of);
                 let step = ("textures of the lightmap", 0.0);
                 let values = self::values(scene, atlas, &tiles, tint, step, monitor)?;
-                Ok(with_margins(values, &tiles).0)
+                Ok(extended(values, &tiles, |_| true).0)
             };
             tints = Some([tint(TintTarget::Reflectance)?, tint(TintTarget::Emission)?]);
         }
-        seams::close_seams(atlas, &scene.instances, &tiles, &mut irradiance);
+        seams::close_seams(atlas, &scene.instances, &tiles, &distances, &mut irradiance);
         let materials = scene.instances.iter().map(|i| i.materials(&scene.parts[i.part.index()].materials));
         let materials = materials.collect();
-        Ok(Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, holds })
+        Ok(Self { scene, atlas, materials, tints, tiles, irradiance, directions: None, distances })
     }
 
     /// Add the mean direction of each texel's light, computed by `directions`: in scene coordinates, weighted by the
@@ -149,7 +153,7 @@ impl<'a> Lightmap<'a> {
             ("directions of the lightmap", ROWS_PER_TEXEL),
             monitor,
         )?;
-        let tiles = with_margins(values, &self.tiles).0;
+        let tiles = extended(values, &self.tiles, |_| true).0;
         let bare = |tile: Vec<Rgb>| tile.into_iter().map(|Rgb(direction)| direction).collect();
         self.directions = Some(tiles.into_iter().map(bare).collect());
         Ok(self)
@@ -219,23 +223,16 @@ fn values(
     Ok(values)
 }
 
-/// Values extended to margins, zero for all other texels, and what each texel holds.
-fn with_margins(mut values: Vec<Vec<Option<Rgb>>>, tiles: &[Tile]) -> (Vec<Vec<Rgb>>, Vec<Vec<Holds>>) {
-    let whose = |had: &[Option<Rgb>], have: &[Option<Rgb>]| {
-        let both = had.iter().zip(have);
-        both.map(|(had, have)| match (had, have) {
-            (Some(_), _) => Holds::Chart,
-            (None, Some(_)) => Holds::Margin,
-            (None, None) => Holds::Nothing,
-        })
-        .collect()
-    };
-    let fill = |(values, tile): (&mut Vec<Option<Rgb>>, &Tile)| {
-        let had = values.clone();
-        dilate::dilate(values, tile.size[0]);
-        whose(&had, values)
-    };
-    let holds = values.par_iter_mut().zip(tiles).map(fill).collect();
+/// Values extended over the rectangles of tiles from those for which `extends` holds, zero where there are none, and how far each
+/// is away from where it was.
+fn extended(
+    mut values: Vec<Vec<Option<Rgb>>>,
+    tiles: &[Tile],
+    extends: impl Fn(Rgb) -> bool + Sync,
+) -> (Vec<Vec<Rgb>>, Vec<Vec<u32>>) {
+    let extend =
+        |(values, tile): (&mut Vec<Option<Rgb>>, &Tile)| dilate::dilate(values, tile.size[0], &extends);
+    let distances = values.par_iter_mut().zip(tiles).map(extend).collect();
     let filled = |values: Vec<Option<Rgb>>| values.into_iter().map(Option::unwrap_or_default).collect();
-    (values.into_iter().map(filled).collect(), holds)
+    (values.into_iter().map(filled).collect(), distances)
 }

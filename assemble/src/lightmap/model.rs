@@ -9,7 +9,7 @@ use super::Lightmap;
 use super::images::Peaks;
 use super::listing::rectangles;
 use crate::origin_node::under_origin;
-use equilux_formats::{MaterialId, Rgb, glb};
+use equilux_formats::{Material, MaterialId, Rgb, glb};
 use glam::{DVec3, UVec2, Vec2, Vec3};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -52,12 +52,12 @@ fn matrix(placement: glam::DAffine3) -> [f64; 16] {
     glam::DMat4::from(placement).to_cols_array()
 }
 
-/// Triangles of one material on one sheet.
+/// Triangles of one material on one sheet, or without texels.
 struct ModelPrimitive {
     material: MaterialId,
-    sheet: usize,
     positions: usize,
-    coordinates: usize,
+    /// The sheet, and the accessor of coordinates on it.
+    texels: Option<(usize, usize)>,
 }
 
 #[derive(Default)]
@@ -74,9 +74,9 @@ impl ModelDocument {
     /// The triangles of a layout.
     fn add_vertices(&mut self, lightmap: &Lightmap, layout: usize) -> Vec<ModelPrimitive> {
         let layout = &lightmap.atlas.layouts[layout];
-        let mut groups: BTreeMap<(MaterialId, usize), Vec<(Vec3, Vec2)>> = BTreeMap::new();
+        let mut groups: BTreeMap<(MaterialId, Option<usize>), Vec<(Vec3, Vec2)>> = BTreeMap::new();
         for ((chart, grid), spot) in layout.charts.iter().zip(&layout.grids).zip(&layout.spots) {
-            let group = groups.entry((chart.material, spot.image)).or_default();
+            let group = groups.entry((chart.material, Some(spot.image))).or_default();
             let size = UVec2::from(layout.sheets[spot.image]) - 2 * layout.border;
             let first = UVec2::from(spot.at).as_dvec2() - f64::from(layout.border);
             for (side, &plane) in chart.sides.iter().zip(&chart.planes) {
@@ -84,14 +84,19 @@ impl ModelDocument {
                 group.extend(triangles(side.corners.as_slice()).map(|p| (p.as_vec3(), coordinates(p))));
             }
         }
-        let primitive = |((material, sheet), vertices): ((MaterialId, usize), Vec<(Vec3, Vec2)>)| {
-            let [positions, coordinates] = self.add_accessors(&vertices);
-            ModelPrimitive { material, sheet, positions, coordinates }
+        for side in &layout.without_texels {
+            let corners = triangles(side.corners.as_slice()).map(|p| (p.as_vec3(), Vec2::ZERO));
+            groups.entry((side.material, None)).or_default().extend(corners);
+        }
+        let primitive = |((material, sheet), vertices): ((MaterialId, Option<usize>), Vec<(Vec3, Vec2)>)| {
+            let positions = self.add_accessors(&vertices, sheet.is_some());
+            ModelPrimitive { material, positions, texels: sheet.map(|sheet| (sheet, positions + 1)) }
         };
         groups.into_iter().map(primitive).collect()
     }
 
-    fn add_accessors(&mut self, vertices: &[(Vec3, Vec2)]) -> [usize; 2] {
+    /// Adds the accessor of positions, and after it that of coordinates if there are any; returns the first.
+    fn add_accessors(&mut self, vertices: &[(Vec3, Vec2)], with_coordinates: bool) -> usize {
         let (start, first) = (self.vertices.len(), self.accessors.len());
         let bound = |start: Vec3, pick: fn(Vec3, Vec3) -> Vec3| {
             vertices.iter().map(|v| v.0).fold(start, pick).to_array()
@@ -100,14 +105,16 @@ impl ModelDocument {
             "bufferView": 0, "byteOffset": start, "componentType": FLOAT, "count": vertices.len(), "type": "VEC3",
             "min": bound(Vec3::INFINITY, Vec3::min), "max": bound(Vec3::NEG_INFINITY, Vec3::max),
         }));
-        self.accessors.push(json!({
-            "bufferView": 0, "byteOffset": start + 12, "componentType": FLOAT, "count": vertices.len(), "type": "VEC2",
-        }));
+        if with_coordinates {
+            self.accessors.push(json!({
+                "bufferView": 0, "byteOffset": start + 12, "componentType": FLOAT, "count": vertices.len(), "type": "VEC2",
+            }));
+        }
         for (position, coordinate) in vertices {
             let numbers = position.to_array().into_iter().chain(coordinate.to_array());
             self.vertices.extend(numbers.flat_map(f32::to_le_bytes));
         }
-        [first, first + 1]
+        first
     }
 
     /// Add the mesh of an instance, with materials of its own, and return its index.
@@ -120,10 +127,11 @@ impl ModelDocument {
     ) -> usize {
         let primitive = |p: &ModelPrimitive| {
             self.materials.push(material(lightmap, instance, p, look));
-            json!({
-                "attributes": { "POSITION": p.positions, "TEXCOORD_0": p.coordinates, "TEXCOORD_1": p.coordinates },
-                "material": self.materials.len() - 1,
-            })
+            let attributes = match p.texels {
+                Some((_, at)) => json!({ "POSITION": p.positions, "TEXCOORD_0": at, "TEXCOORD_1": at }),
+                None => json!({ "POSITION": p.positions }),
+            };
+            json!({ "attributes": attributes, "material": self.materials.len() - 1 })
         };
         let primitives: Vec<Value> = primitives.iter().map(primitive).collect();
         let part = lightmap.scene.instances[instance].part.index();
@@ -170,12 +178,13 @@ impl ModelDocument {
 }
 
 fn material(lightmap: &Lightmap, instance: usize, primitive: &ModelPrimitive, look: &ModelLook) -> Value {
-    let rectangle = &rectangles(lightmap, instance)[primitive.sheet];
+    let source = &lightmap.materials_of(instance)[primitive.material.index()];
+    let Some((sheet, _)) = primitive.texels else { return plain(source, look) };
+    let rectangle = &rectangles(lightmap, instance)[sheet];
     let texture = json!({
         "index": rectangle.image, "texCoord": 1,
         "extensions": { "KHR_texture_transform": { "offset": rectangle.offset, "scale": rectangle.scale } },
     });
-    let source = &lightmap.materials_of(instance)[primitive.material.index()];
     match look {
         ModelLook::Emissive(peaks) => json!({
             "name": source.name,
@@ -192,6 +201,26 @@ fn material(lightmap: &Lightmap, instance: usize, primitive: &ModelPrimitive, lo
             "name": source.name,
             "pbrMetallicRoughness": { "baseColorTexture": texture, "metallicFactor": 0.0, "roughnessFactor": 1.0 },
             "extensions": { "KHR_materials_unlit": {} },
+        }),
+    }
+}
+
+/// The material of a surface without texels.
+fn plain(source: &Material, look: &ModelLook) -> Value {
+    let peak = source.emission.iter().fold(0.0, |peak: f64, &e| peak.max(e));
+    let colour = json!({
+        "baseColorFactor": opaque(source.reflectance), "metallicFactor": 0.0, "roughnessFactor": 1.0,
+    });
+    match look {
+        ModelLook::Emissive(_) if peak > 0.0 => json!({
+            "name": source.name,
+            "pbrMetallicRoughness": colour,
+            "emissiveFactor": (source.emission / peak).0,
+            "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": peak / PI } },
+        }),
+        ModelLook::Emissive(_) => json!({ "name": source.name, "pbrMetallicRoughness": colour }),
+        ModelLook::Unlit => json!({
+            "name": source.name, "pbrMetallicRoughness": colour, "extensions": { "KHR_materials_unlit": {} },
         }),
     }
 }

@@ -37,6 +37,8 @@ pub struct Texel {
 pub struct TexelFootprint {
     /// Index of the patch in which it lies.
     pub patch: usize,
+    /// Index of the chart's side of which it is part.
+    pub side: usize,
     /// Corners, counter-clockwise seen from the lit side, metres.
     pub corners: Polygon,
     /// Unit normal of the lit side.
@@ -60,7 +62,7 @@ impl Texels {
         let mut texels: BTreeMap<[u32; 2], Vec<TexelFootprint>> = BTreeMap::new();
         let determinant = placement.matrix3.determinant();
         let grows = determinant.abs().cbrt().powi(2);
-        for (side, &patch) in chart.sides.iter().zip(&chart.planes) {
+        for (number, (side, &patch)) in chart.sides.iter().zip(&chart.planes).enumerate() {
             let on_plane = &patches[patch];
             let texel = |&p: &DVec3| grid.texel_of(patch, p).extend(0.0);
             let seen: Polygon = side.corners.as_slice().iter().map(texel).collect();
@@ -84,6 +86,7 @@ impl Texels {
                 }
                 texels.entry([row, column]).or_default().push(TexelFootprint {
                     patch,
+                    side: number,
                     corners,
                     normal,
                     area,

@@ -7,9 +7,11 @@
 use super::atlas::{Atlas, Tile};
 use super::grid::MARGIN;
 use super::knots::Knots;
+use super::side::SurfaceSide;
 use super::squares::Square;
-use super::texels::{Texel, Texels};
+use super::texels::{Texel, TexelFootprint, Texels};
 use crate::receivers::Receivers;
+use crate::receivers::curve::Curve;
 use crate::receivers::open_area::{OpenArea, PlanePiece};
 use crate::receivers::sharp::SharpRows;
 use equilux_bake::geometry::aabb::Aabb;
@@ -117,14 +119,24 @@ impl<'a> TracedChart<'a> {
     /// The chart of a tile. Fails if the monitor was stopped.
     pub fn new(receivers: &'a Receivers, atlas: &'a Atlas, tile: &'a Tile) -> Result<Self> {
         let (chart, grid) = atlas.chart_of(tile);
-        let texels = Texels::new(chart, grid, 0..tile.size[1], tile.instance, DAffine3::IDENTITY);
+        let mut texels = Texels::new(chart, grid, 0..tile.size[1], tile.instance, DAffine3::IDENTITY);
+        let curves: Vec<Option<Curve>> = chart.sides.iter().map(SurfaceSide::curve).collect();
         let open_area = |texel: &Texel| {
-            let pieces = texel.footprints.iter().map(|piece| (piece.corners.as_slice(), piece.normal));
+            let pieces = texel.footprints.iter().map(|TexelFootprint { corners, normal, side, .. }| {
+                PlanePiece { corners, normal: *normal, curve: curves[*side].as_ref() }
+            });
             let pieces: Vec<PlanePiece> = pieces.collect();
             OpenArea::of(receivers.scenery, tile.instance, &pieces, middle(&texels, texel))
         };
         let open: Vec<Option<OpenArea>> = texels.texels.par_iter().map(open_area).collect();
         receivers.check_stopped()?;
+        // From here on, normals are those of light.
+        for footprint in texels.texels.iter_mut().flat_map(|texel| &mut texel.footprints) {
+            if let Some(curve) = &curves[footprint.side] {
+                let middle = footprint.corners.iter().sum::<DVec3>() / footprint.corners.len() as f64;
+                footprint.normal = curve.at(middle).normal;
+            }
+        }
         let mut number = vec![u32::MAX; tile.texels()];
         for (k, (texel, open)) in texels.texels.iter().zip(&open).enumerate() {
             if open.is_some() {
@@ -234,7 +246,7 @@ impl<'a> TracedChart<'a> {
     fn row(&self, at: [u32; 2]) -> AreaRow {
         let area = self.area(self.at(at).expect("it is open"));
         // Places as small as half a texel: each gets the mean over a texel.
-        let least = self.atlas.texel_size / 2.0;
+        let least = self.atlas.texel_size_of(self.tile) / 2.0;
         self.receivers.row(self.tile.instance, (area, self.tile.chart as u32), least)
     }
 
@@ -294,10 +306,11 @@ impl<'a> TracedChart<'a> {
         let corners: Vec<DVec3> = corners.map(|corner| placement.transform_point3(corner)).collect();
         let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let width = corners.iter().map(|corner| (*corner - middle).length()).fold(0.0, f64::max);
-        if width <= self.atlas.texel_size {
+        if width <= self.atlas.texel_size_of(self.tile) {
             return false;
         }
-        let inside = corners.iter().map(|corner| corner.lerp(middle, self.atlas.texel_size / width));
+        let inside =
+            corners.iter().map(|corner| corner.lerp(middle, self.atlas.texel_size_of(self.tile) / width));
         let inside: Vec<DVec3> = inside.collect();
         let above = inside.iter().map(|corner| *corner + normal * (ABOVE * width));
         let bounds = Aabb::around(inside.iter().copied().chain(above));

@@ -11,20 +11,23 @@
 
 mod at_points;
 pub mod columns;
+pub mod curve;
 pub mod open_area;
 pub mod sharp;
 
 use crate::equation::coupling::Coupler;
 use crate::gather::outside::frame;
 use crate::gather::sky::SkyCells;
+use crate::gather::surface_piece::cells;
 use crate::placed_parts::PlacedParts;
 use crate::solve::Solved;
 use columns::{Column, Columns, polygon};
+use curve::Curve;
 use equilux_bake::monitor::Monitor;
 use equilux_bake::oven::Oven;
 use equilux_bake::rays::Ray;
 use equilux_bake::rays::areas::{AreaRow, area_row};
-use equilux_bake::rays::hemisphere::Emitters;
+use equilux_bake::rays::hemisphere::{Emitters, SurfacePoint};
 use equilux_bake::rays::samples::Samples;
 use equilux_bake::rays::scenery::{Landing, Scenery};
 use equilux_bake::rays::sobol::hash;
@@ -35,7 +38,7 @@ use equilux_formats::{
     Corners, Element, Error, FaceId, Material, MaterialId, Result, Rgb, Rows, Scene, Store,
 };
 use glam::DVec3;
-use open_area::OpenArea;
+use open_area::{OpenArea, PlanePiece};
 use rayon::prelude::*;
 use sharp::{SharpLights, SharpRows};
 use std::collections::{BTreeSet, HashMap};
@@ -224,7 +227,7 @@ impl<'a> Receivers<'a> {
                 let corners: Vec<DVec3> = corners.iter().map(|&p| back.transform_point3(p)).collect();
                 let normal = back.transform_vector3(element.normal).normalize();
                 let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-                let whole = [(corners.as_slice(), normal)];
+                let whole = [PlanePiece { corners: &corners, normal, curve: None }];
                 // A ray ended here, so it is seen, also in a narrow gap that counts as covered.
                 OpenArea::of(self.scenery, instance, &whole, middle)
                     .map(|open| open.area)
@@ -327,31 +330,53 @@ fn proxies(placed: &PlacedParts) -> Vec<[f64; 3]> {
     all.map(of).collect()
 }
 
-/// The area of these convex polygons with their unit normals, a little in front of their planes; none if they have no area.
-pub fn area_of<'a>(polygons: impl IntoIterator<Item = (&'a [DVec3], DVec3)>) -> Option<Emitters> {
+/// The normals of a curved piece differ by at most about this from the one with which it is computed, radians.
+const TURN: f64 = 0.1;
+
+/// A curved polygon is cut into at most so many cells along each side.
+const CURVED_CELLS: usize = 8;
+
+/// The area of these convex polygons, a little in front of their planes; none if they have no area. Of curved surfaces, small
+/// pieces with normals of their own.
+pub fn area_of<'a>(polygons: impl IntoIterator<Item = PlanePiece<'a>>) -> Option<Emitters> {
     let mut elements = Vec::new();
-    for (corners, normal) in polygons {
+    for PlanePiece { corners, normal, curve } in polygons {
         let largest = corners.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let raise = normal * (IN_FRONT * largest);
-        let pieces: Vec<Corners> = match *corners {
-            [a, b, c, d] => vec![Corners::quad([a, b, c, d])],
-            _ => (2..corners.len())
-                .map(|k| Corners::triangle([corners[0], corners[k - 1], corners[k]]))
-                .collect(),
+        let Some(curve) = curve else {
+            let flat = SurfacePoint { normal, lift: DVec3::ZERO };
+            elements.extend(elements_of(corners, normal, raise).map(|element| (element, flat)));
+            continue;
         };
-        elements.extend(pieces.into_iter().filter_map(|corners| {
-            let corners = corners.map(|p| p + raise);
-            let area = corners.double_area_vector().length() / 2.0;
-            let element = Element {
-                corners,
-                normal,
-                centroid: corners.as_slice()[0],
-                area,
-                material: MaterialId(0),
-                face: FaceId(0),
-            };
-            (area > 0.0).then_some(element)
-        }));
+        for cell in cells(corners, cells_along(corners, curve)) {
+            let here = curve.at(cell.iter().sum::<DVec3>() / cell.len() as f64);
+            elements.extend(elements_of(&cell, normal, raise).map(|element| (element, here)));
+        }
     }
-    (!elements.is_empty()).then(|| Emitters::new(&elements))
+    (!elements.is_empty()).then(|| Emitters::curved(&elements))
+}
+
+/// The number of cells along each side of a polygon of a curved surface.
+fn cells_along(corners: &[DVec3], curve: &Curve) -> usize {
+    let normals: Vec<DVec3> = corners.iter().map(|&corner| curve.at(corner).normal).collect();
+    let turns = normals.iter().flat_map(|a| normals.iter().map(|b| (*a - *b).length()));
+    let most = turns.fold(0.0, f64::max);
+    ((most / (2.0 * TURN)).ceil() as usize).clamp(1, CURVED_CELLS)
+}
+
+/// A convex polygon as elements, moved by `raise`.
+fn elements_of(corners: &[DVec3], normal: DVec3, raise: DVec3) -> impl Iterator<Item = Element> + use<> {
+    let pieces: Vec<Corners> = match *corners {
+        [a, b, c, d] => vec![Corners::quad([a, b, c, d])],
+        _ => {
+            (2..corners.len()).map(|k| Corners::triangle([corners[0], corners[k - 1], corners[k]])).collect()
+        }
+    };
+    pieces.into_iter().filter_map(move |corners| {
+        let corners = corners.map(|p| p + raise);
+        let area = corners.double_area_vector().length() / 2.0;
+        let centroid = corners.as_slice()[0];
+        let element = Element { corners, normal, centroid, area, material: MaterialId(0), face: FaceId(0) };
+        (area > 0.0).then_some(element)
+    })
 }

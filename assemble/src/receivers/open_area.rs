@@ -2,6 +2,7 @@
 //! is averaged over what is left, so that texels are not dark for being half covered.
 
 use super::area_of;
+use super::curve::Curve;
 use crate::gather::surface_piece::cells;
 use equilux_bake::geometry::polygon::{Polygon, area};
 use equilux_bake::rays::areas::Cover;
@@ -18,8 +19,16 @@ pub struct OpenArea {
     pub is_whole: bool,
 }
 
-/// A planar convex polygon with its unit normal.
-pub type PlanePiece<'a> = (&'a [DVec3], DVec3);
+/// A planar convex polygon.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanePiece<'a> {
+    /// Its corners.
+    pub corners: &'a [DVec3],
+    /// Its unit normal.
+    pub normal: DVec3,
+    /// The smooth surface for which it stands, if that is not flat.
+    pub curve: Option<&'a Curve>,
+}
 
 /// Cells on each side of a polygon of which it is found out whether something covers them.
 const CELLS: usize = 8;
@@ -37,34 +46,35 @@ const NEAREST: f64 = 2.0;
 impl OpenArea {
     /// The open area of a piece of an instance, in its coordinates, around this middle; none if all of it is covered.
     pub fn of(scenery: &Scenery, instance: usize, polygons: &[PlanePiece], middle: DVec3) -> Option<Self> {
-        let width = polygons.iter().map(|(corners, _)| area(corners)).sum::<f64>().sqrt();
+        let width = polygons.iter().map(|piece| area(piece.corners)).sum::<f64>().sqrt();
         let cover = Cover { scenery, instance, near: NEAR * width, gap: GAP * width };
-        let may_be_covered = polygons.iter().any(|&(corners, normal)| {
-            let mut places = places(corners, normal).enumerate();
-            places.any(|(k, place)| cover.may_be_covered(place, normal, k))
+        let may_be_covered = polygons.iter().any(|&PlanePiece { corners, normal, .. }| {
+            let middle = raised(mean(corners), normal);
+            places(corners, normal).any(|place| cover.may_be_covered(place, normal, middle))
         });
         if !may_be_covered {
             return Some(Self { area: area_of(polygons.iter().copied())?, is_whole: true });
         }
         let divided = polygons
             .iter()
-            .flat_map(|&(corners, normal)| cells(corners, CELLS).into_iter().map(move |cell| (cell, normal)));
-        let all: Vec<(Polygon, DVec3)> = divided.collect();
-        let is_open =
-            |(cell, normal): &&(Polygon, DVec3)| !cover.is_covered(raised(mean(cell), *normal), *normal);
-        let open: Vec<&(Polygon, DVec3)> = all.iter().filter(is_open).collect();
+            .flat_map(|piece| cells(piece.corners, CELLS).into_iter().map(move |cell| (cell, piece)));
+        let all: Vec<(Polygon, &PlanePiece)> = divided.collect();
+        let is_open = |(cell, PlanePiece { normal, .. }): &&(Polygon, &PlanePiece)| {
+            !cover.is_covered(raised(mean(cell), *normal), *normal)
+        };
+        let open: Vec<&(Polygon, &PlanePiece)> = all.iter().filter(is_open).collect();
         let is_whole = open.len() == all.len();
         let distance = |cell: &[DVec3]| (mean(cell) - middle).length();
         let nearest = open.iter().map(|(cell, _)| distance(cell)).fold(f64::INFINITY, f64::min);
         let most = nearest + NEAREST * width / CELLS as f64;
         let used: Vec<_> = open.into_iter().filter(|(cell, _)| is_whole || distance(cell) <= most).collect();
         // Cells whose corners are open too, or all if there are none.
-        let whole_cell = |(cell, normal): &&&(Polygon, DVec3)| {
+        let whole_cell = |(cell, PlanePiece { normal, .. }): &&&(Polygon, &PlanePiece)| {
             places(cell, *normal).all(|place| !cover.is_covered(place, *normal))
         };
         let clear: Vec<_> = if is_whole { vec![] } else { used.iter().filter(whole_cell).copied().collect() };
         let used = if clear.is_empty() { used } else { clear };
-        let area = area_of(used.iter().map(|(cell, normal)| (cell.as_slice(), *normal)))?;
+        let area = area_of(used.iter().map(|(corners, piece)| PlanePiece { corners, ..**piece }))?;
         Some(Self { area, is_whole })
     }
 }

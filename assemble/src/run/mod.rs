@@ -48,8 +48,12 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
 pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Result<Report> {
     let start = Instant::now();
     let Job { settings, outputs: requests, .. } = job;
-    let (scene, prepared) = opened(job)?;
-    let atlas = requests.lightmaps.map(|options| Atlas::new(&scene, options.texel_size)).transpose()?;
+    let (mut scene, prepared) = opened(job)?;
+    if prepared.resolution.rays.is_none() {
+        // Exact rows know planes only.
+        scene.flatten_normals();
+    }
+    let atlas = requests.lightmaps.map(|options| Atlas::of(&scene, &options)).transpose()?;
     let (places, against) = job.tables(scene.origin)?;
     let environment = settings.environment()?;
     let store = Store::open(&settings.cache)?;

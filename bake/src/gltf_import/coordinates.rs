@@ -1,9 +1,10 @@
-//! Vertex attributes that colour a primitive: texture coordinates, transformed by KHR_texture_transform, and vertex colours.
+//! Vertex attributes of a primitive besides positions: texture coordinates, transformed by KHR_texture_transform, vertex colours
+//! and normals.
 
 use super::accessors::{check_type, components};
 use super::document::Document;
 use equilux_formats::{Result, Rgb};
-use glam::{DAffine2, DMat2, DVec2};
+use glam::{DAffine2, DMat2, DVec2, DVec3};
 use gltf::accessor::{DataType, Dimensions};
 use gltf::{Primitive, Semantic, texture};
 
@@ -74,6 +75,21 @@ pub(super) fn texture_coordinates(
     check_type(document, &accessor, &what, Dimensions::Vec2, &types)?;
     check_count(document, &accessor, &what, vertices)?;
     Ok(Some(components(document, &accessor, &what)?.chunks_exact(2).map(DVec2::from_slice).collect()))
+}
+
+/// NORMAL, if the primitive has it.
+pub(super) fn normals(
+    document: &Document,
+    primitive: &Primitive,
+    vertices: usize,
+    mesh: &str,
+) -> Result<Option<Vec<DVec3>>> {
+    let what = format!("NORMAL of mesh {mesh}");
+    let Some(accessor) = primitive.get(&Semantic::Normals) else { return Ok(None) };
+    // Integers are allowed by KHR_mesh_quantization.
+    check_type(document, &accessor, &what, Dimensions::Vec3, &[DataType::F32, DataType::I8, DataType::I16])?;
+    check_count(document, &accessor, &what, vertices)?;
+    Ok(Some(components(document, &accessor, &what)?.chunks_exact(3).map(DVec3::from_slice).collect()))
 }
 
 /// COLOR_0, if the primitive has it, clamped to 0..1 as glTF requires, without alpha.

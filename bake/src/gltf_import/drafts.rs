@@ -9,7 +9,7 @@ use super::notes::Notes;
 use super::repaint::Look;
 use super::surfaces::{Dropped, f32_spacing};
 use equilux_formats::texture::TexturedTriangle;
-use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface};
+use equilux_formats::{LocalSolver, MaterialId, PunctualLight, Result, Surface, TexelChoice};
 use glam::{DAffine3, DVec3};
 
 /// The largest number of surfaces of a part: a few kilobytes of nodes that share a mesh could produce any number.
@@ -70,17 +70,17 @@ pub(super) fn step_after(step: f64, placement: DAffine3) -> f64 {
 }
 
 impl Draft {
-    /// Adds `mesh`, placed by `placement` and repainted by `look`.
+    /// Adds `mesh`, placed by `placement` and repainted by `look`, with these `texels`.
     pub(super) fn add_mesh(
         &mut self,
         document: &Document,
         mesh: &Mesh,
         placement: DAffine3,
-        look: &Look,
+        (look, texels): (&Look, TexelChoice),
     ) -> Result<()> {
         for primitive in &mesh.primitives {
             let material = self.paints.id(look.on(&primitive.paint));
-            let surfaces = primitive.surfaces.iter().map(|surface| Surface { material, ..*surface });
+            let surfaces = primitive.surfaces.iter().map(|surface| Surface { material, texels, ..*surface });
             self.add(document, surfaces, placement)?;
             self.add_textured(&primitive.textured, |_| material, placement);
         }
@@ -89,18 +89,22 @@ impl Draft {
         Ok(())
     }
 
-    /// Adds all of `other`, placed by `placement` and repainted by `look`.
+    /// Adds all of `other`, placed by `placement` and repainted by `look`, with these `texels` where it chooses none itself.
     pub(super) fn add_draft(
         &mut self,
         document: &Document,
         other: &Draft,
         placement: DAffine3,
-        look: &Look,
+        (look, texels): (&Look, TexelChoice),
     ) -> Result<()> {
         let materials: Vec<MaterialId> =
             other.paints.0.iter().map(|paint| self.paints.id(look.on(paint))).collect();
         let surfaces = other.surfaces.iter();
-        let surfaces = surfaces.map(|s| Surface { material: materials[s.material.index()], ..*s });
+        let surfaces = surfaces.map(|s| Surface {
+            material: materials[s.material.index()],
+            texels: s.texels.or(texels),
+            ..*s
+        });
         self.add(document, surfaces, placement)?;
         self.add_textured(&other.textured, |old| materials[old.index()], placement);
         self.lights.extend(other.lights.iter().map(|light| moved(light, placement, look.emission_scale)));

@@ -1,9 +1,9 @@
 //! Settings in a node's `extras`: `part`, `element_size`, `emission_scale`, `materials`, `angular_diameter`,
-//! `local_solver`. Other keys are ignored.
+//! `local_solver`, `texel_size`, `lightmap`, `bake`. Other keys are ignored.
 
 use super::document::{Document, label};
 use super::repaint::{Changes, changes};
-use equilux_formats::{LocalSolver, Result};
+use equilux_formats::{LocalSolver, Result, TexelChoice};
 use serde_json::Value;
 
 /// The known keys.
@@ -21,6 +21,10 @@ pub(super) struct Extras {
     pub(super) angular_diameter: Option<f64>,
     /// The solver of the part's local equilibrium.
     pub(super) local_solver: Option<LocalSolver>,
+    /// The texels of everything below the node.
+    pub(super) texels: TexelChoice,
+    /// Whether the node and everything below it take part at all.
+    pub(super) bake: Option<bool>,
 }
 
 impl Extras {
@@ -31,9 +35,7 @@ impl Extras {
         let key = Keys { document, node, values: &values };
         Ok(Self {
             part: key.get("part", "the path of a glTF file", path)?,
-            element_size: key.get("element_size", "a number above 0, metres", |value| {
-                value.as_f64().filter(|&size| size.is_finite() && size > 0.0)
-            })?,
+            element_size: key.get("element_size", LENGTH, length)?,
             emission_scale: key.get("emission_scale", "a number, 0 or more", |value| {
                 value.as_f64().filter(|&scale| scale.is_finite() && scale >= 0.0)
             })?,
@@ -51,13 +53,29 @@ impl Extras {
                 "\"direct\", \"gauss-seidel\", \"progressive\" or \"iterative\"",
                 |value| serde_json::from_value(value.clone()).ok(),
             )?,
+            texels: TexelChoice {
+                size: key.get("texel_size", LENGTH, length)?,
+                any: key.get("lightmap", "true or false", Value::as_bool)?,
+            },
+            bake: key.get("bake", "true or false", Value::as_bool)?,
         })
     }
 
-    /// Whether any of the keys is there.
+    /// Whether any of the keys is there that says more about the node than the nodes below it inherit.
     pub(super) fn any(&self) -> bool {
-        *self != Self::default()
+        *self != Self { texels: self.texels, bake: self.bake, ..Self::default() }
     }
+
+    /// Whether the node and everything below it are ignored.
+    pub(super) fn ignored(&self) -> bool {
+        self.bake == Some(false)
+    }
+}
+
+const LENGTH: &str = "a number above 0, metres";
+
+fn length(value: &Value) -> Option<f64> {
+    value.as_f64().filter(|&size| size.is_finite() && size > 0.0)
 }
 
 fn path(value: &Value) -> Option<String> {

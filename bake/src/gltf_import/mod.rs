@@ -37,7 +37,7 @@ pub use files::{is_gltf, scenes_in};
 use crate::tidy::tidy;
 use document::Document;
 use drafts::{Draft, Settings, step_after};
-use equilux_formats::{Instance, LocalSolver, MaterialId, PartId, Repainted, Result, Scene};
+use equilux_formats::{Instance, LocalSolver, MaterialId, PartId, Repainted, Result, Scene, TexelChoice};
 use glam::{DAffine3, DMat3, DVec3};
 use instancing::MOST_COPIES;
 use lights::{camera, light, moved};
@@ -62,7 +62,7 @@ pub fn import_scene(file: &Path) -> Result<Scene> {
     let mut part_files = PartFiles::around(file)?;
     let document = part_files.open(file)?;
     let mut stage = Stage::new(&document, part_files);
-    for root in part_roots(&document)? {
+    for root in part_roots(&document, &mut stage.part_files.notes)? {
         stage.add_root(root)?;
     }
     stage.into_scene()
@@ -95,8 +95,8 @@ struct ImportedPart {
 #[derive(PartialEq, Eq, Hash)]
 struct Recipe {
     file: Option<PathBuf>,
-    /// Mesh, placement and look of each node.
-    nodes: Vec<(usize, [u64; 12], LookRecipe)>,
+    /// Mesh, placement, look and texels of each node.
+    nodes: Vec<(usize, [u64; 12], LookRecipe, (Option<u64>, Option<bool>))>,
     settings: (Option<u64>, Option<LocalSolver>),
     linear: [u64; 9],
 }
@@ -151,7 +151,7 @@ impl<'a> Stage<'a> {
         own.retain(|placed| placed.node.mesh().is_some());
         if !own.is_empty() {
             let at = (root.name(), root.placement);
-            self.place(&root.look, at, settings, &Contents::Nodes(own))?;
+            self.place((&root.look, root.texels), at, settings, &Contents::Nodes(own))?;
         }
         subtree(self.document, root)?.iter().try_for_each(|placed| self.add_other(placed))
     }
@@ -191,13 +191,15 @@ impl<'a> Stage<'a> {
                 "join copies to larger parts",
             ));
         }
-        copies.into_iter().try_for_each(|at| self.place(&placed.look, at, settings, contents))
+        copies
+            .into_iter()
+            .try_for_each(|at| self.place((&placed.look, placed.texels), at, settings, contents))
     }
 
     /// Adds the instance of this name and placement.
     fn place(
         &mut self,
-        look: &Look,
+        (look, texels): (&Look, TexelChoice),
         (name, placement): (String, DAffine3),
         settings: Settings,
         contents: &Contents<'a>,
@@ -222,6 +224,7 @@ impl<'a> Stage<'a> {
             placement: placement * DAffine3::from_translation(start),
             emission_scale: look.emission_scale,
             repainted: repainted(look, &paints),
+            texels,
         });
         Ok(())
     }
@@ -260,7 +263,7 @@ impl<'a> Stage<'a> {
             self.part_files
                 .asked
                 .hear(&placed.look, mesh.primitives.iter().map(|primitive| &primitive.paint));
-            draft.add_mesh(self.document, &mesh, placed.placement, &placed.look)?;
+            draft.add_mesh(self.document, &mesh, placed.placement, (&placed.look, placed.texels))?;
         }
         Ok(draft)
     }
@@ -269,7 +272,8 @@ impl<'a> Stage<'a> {
 fn recipe(contents: &Contents, settings: Settings, linear: DMat3) -> Recipe {
     let mesh = |placed: &PlacedNode| {
         let index = placed.node.mesh().map_or(usize::MAX, |mesh| mesh.index());
-        (index, placed.placement.to_cols_array().map(f64::to_bits), placed.look.recipe())
+        let texels = (placed.texels.size.map(f64::to_bits), placed.texels.any);
+        (index, placed.placement.to_cols_array().map(f64::to_bits), placed.look.recipe(), texels)
     };
     let (file, nodes) = match contents {
         Contents::Nodes(nodes) => (None, nodes.iter().map(mesh).collect()),

@@ -5,8 +5,9 @@
 
 use super::document::{Document, label};
 use super::extras::Extras;
+use super::notes::Notes;
 use super::repaint::{Look, Repaint};
-use equilux_formats::Result;
+use equilux_formats::{Result, TexelChoice};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 use gltf::Node;
 use gltf::scene::Transform;
@@ -22,12 +23,19 @@ pub(super) struct PlacedNode<'a> {
     pub(super) placement: DAffine3,
     /// The material changes of the nodes from the start of the walk to this one.
     pub(super) look: Look,
+    /// What these nodes choose for texels; the last one decides.
+    pub(super) texels: TexelChoice,
 }
 
 impl<'a> PlacedNode<'a> {
     /// The same node as the start of a walk.
     pub(super) fn as_origin(&self) -> Self {
-        Self { placement: DAffine3::IDENTITY, look: Look::default(), ..self.clone() }
+        Self {
+            placement: DAffine3::IDENTITY,
+            look: Look::default(),
+            texels: TexelChoice::default(),
+            ..self.clone()
+        }
     }
 
     /// The name of the node.
@@ -49,17 +57,16 @@ impl<'a> PlacedNode<'a> {
         look.emission_scale *= extras.emission_scale.unwrap_or(1.0);
         let repaint = |changes: &_| Rc::new(Repaint::new(&node, label(&node), changes));
         look.repaints.extend(extras.materials.as_ref().map(repaint));
-        Ok(Self { node, extras, placement, look })
+        let texels = extras.texels.or(self.texels);
+        Ok(Self { node, extras, placement, look, texels })
     }
 }
 
-/// The root nodes of the scene with their own transforms. Fails unless the hierarchy is a tree.
-pub(super) fn roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
+/// The root nodes of the scene with their own transforms, without those that are ignored. Fails unless the hierarchy is a tree.
+pub(super) fn roots<'a>(document: &'a Document, notes: &mut Notes) -> Result<Vec<PlacedNode<'a>>> {
     let roots = root_nodes(document);
-    check_tree(document, &roots)?;
-    let roots: Result<Vec<_>> =
-        roots.into_iter().map(|node| above_roots(&node).child(document, node)).collect();
-    Ok(in_order(roots?))
+    check_tree(document, &roots, notes)?;
+    roots.first().map(above_roots).map_or(Ok(vec![]), |above| below(document, &above, roots.iter().cloned()))
 }
 
 fn above_roots<'a>(any: &Node<'a>) -> PlacedNode<'a> {
@@ -68,12 +75,13 @@ fn above_roots<'a>(any: &Node<'a>) -> PlacedNode<'a> {
         extras: Extras::default(),
         placement: DAffine3::IDENTITY,
         look: Look::default(),
+        texels: TexelChoice::default(),
     }
 }
 
 /// The nodes that are parts: the roots, or the children of a root that only wraps the whole scene.
-pub(super) fn part_roots(document: &Document) -> Result<Vec<PlacedNode<'_>>> {
-    let mut roots = roots(document)?;
+pub(super) fn part_roots<'a>(document: &'a Document, notes: &mut Notes) -> Result<Vec<PlacedNode<'a>>> {
+    let mut roots = roots(document, notes)?;
     while let [wrapper] = roots.as_slice()
         && is_wrapper(wrapper)
     {
@@ -102,8 +110,19 @@ pub(super) fn subtree<'a>(document: &'a Document, start: PlacedNode<'a>) -> Resu
 }
 
 fn children<'a>(document: &Document, parent: &PlacedNode<'a>) -> Result<Vec<PlacedNode<'a>>> {
-    let children: Result<Vec<_>> = parent.node.children().map(|node| parent.child(document, node)).collect();
-    Ok(in_order(children?))
+    below(document, parent, parent.node.children())
+}
+
+/// These nodes below `parent`, without those that are ignored.
+fn below<'a>(
+    document: &Document,
+    parent: &PlacedNode<'a>,
+    nodes: impl Iterator<Item = Node<'a>>,
+) -> Result<Vec<PlacedNode<'a>>> {
+    let placed = nodes.map(|node| parent.child(document, node));
+    let placed: Result<Vec<_>> =
+        placed.filter(|placed| placed.as_ref().map_or(true, |placed| !placed.extras.ignored())).collect();
+    Ok(in_order(placed?))
 }
 
 /// Nodes by name; of the same name, by placement, and then by what they show.
@@ -134,8 +153,8 @@ fn root_nodes(document: &Document) -> Vec<Node<'_>> {
 }
 
 /// Walks the whole hierarchy and fails if a node occurs twice, as its own ancestor or below a second parent: later
-/// walks would not end, or could grow without bounds.
-fn check_tree(document: &Document, roots: &[Node]) -> Result<()> {
+/// walks would not end, or could grow without bounds. Notes the nodes that are ignored.
+fn check_tree(document: &Document, roots: &[Node], notes: &mut Notes) -> Result<()> {
     let mut parent_of: Vec<Option<Option<usize>>> = vec![None; document.gltf.nodes().len()];
     let mut open: Vec<(Node, Option<usize>)> = roots.iter().map(|root| (root.clone(), None)).collect();
     while let Some((node, parent)) = open.pop() {
@@ -152,6 +171,10 @@ fn check_tree(document: &Document, roots: &[Node]) -> Result<()> {
             ));
         }
         parent_of[node.index()] = Some(parent);
+        if Extras::of(document, &node)?.ignored() {
+            notes.add(label(&node), "ignored with all below, as \"bake\": false in the extras asks");
+            continue;
+        }
         open.extend(node.children().map(|child| (child, Some(node.index()))));
     }
     Ok(())

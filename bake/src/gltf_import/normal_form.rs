@@ -165,7 +165,7 @@ fn keep_primitives(mesh: &mut Map<String, Value>, subject: &str, notes: &mut Not
 /// Whether this is one of the attributes of a vertex that are read here.
 fn is_attribute(name: &str) -> bool {
     let set = |prefix| name.strip_prefix(prefix).is_some_and(|set: &str| set.parse::<u32>().is_ok());
-    name == "POSITION" || set("TEXCOORD_") || set("COLOR_")
+    name == "POSITION" || name == "NORMAL" || set("TEXCOORD_") || set("COLOR_")
 }
 
 /// Replaces cameras of unknown kinds by orthographic ones; neither is supported.

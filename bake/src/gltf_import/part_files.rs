@@ -86,7 +86,7 @@ impl PartFiles {
     fn read(&mut self, path: &Path) -> Result<Rc<Draft>> {
         let document = self.open(path)?;
         let (mut draft, mut meshes) = (Draft::default(), Meshes::of(&document));
-        for root in roots(&document)? {
+        for root in roots(&document, &mut self.notes)? {
             for placed in subtree(&document, root)? {
                 self.add(&document, &mut meshes, &mut draft, &placed)?;
             }
@@ -113,7 +113,7 @@ impl PartFiles {
             draft.settings.hear(part.settings, &placed.name(), &mut self.notes);
             self.asked.hear(&placed.look, &part.paints.0);
             for (_, placement) in placed.copies(document)? {
-                draft.add_draft(document, &part, placement, &placed.look)?;
+                draft.add_draft(document, &part, placement, (&placed.look, placed.texels))?;
             }
             return Ok(());
         }
@@ -121,7 +121,7 @@ impl PartFiles {
             let mesh = meshes.get(&mesh, &mut self.notes)?;
             self.asked.hear(&placed.look, mesh.primitives.iter().map(|primitive| &primitive.paint));
             for (_, placement) in placed.copies(document)? {
-                draft.add_mesh(document, &mesh, placement, &placed.look)?;
+                draft.add_mesh(document, &mesh, placement, (&placed.look, placed.texels))?;
             }
         }
         if let Some(source) = placed.node.light() {

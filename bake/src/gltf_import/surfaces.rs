@@ -15,6 +15,8 @@ const BLUNTEST: f64 = 0.1;
 /// Tolerance of lightmap coordinates, in widths of the lightmap: a tenth of a texel of 4096, or one and a half steps of
 /// 16-bit coordinates.
 const LIGHTMAP_STEP: f64 = 2.5e-5;
+/// Normals that have at least this cosine with that of the face, of one degree, are those of a flat face: files round them.
+const FLAT: f64 = 0.999_85;
 /// Triangles considered across one edge; thousands around one edge would otherwise take quadratic time.
 const NEIGHBOURS: usize = 16;
 
@@ -119,6 +121,8 @@ struct CleanTriangle {
     corners: [DVec3; 3],
     /// Their lightmap coordinates.
     lightmap: Option<[DVec2; 3]>,
+    /// Their normals, if the mesh is smooth here.
+    normals: Option<[DVec3; 3]>,
     /// Its position in the primitive.
     source: usize,
 }
@@ -133,10 +137,20 @@ fn clean(triangles: &Triangles, spacing: fn(f64) -> f64) -> (Vec<CleanTriangle>,
             dropped.duplicates += 1;
         } else {
             let lightmap = triangles.lightmap.as_ref().map(|places| places[source]);
-            kept.push(CleanTriangle { corners, lightmap, source });
+            let normals = triangles.normals.as_ref().and_then(|normals| smooth(&face, normals[source]));
+            kept.push(CleanTriangle { corners, lightmap, normals, source });
         }
     }
     (kept, dropped)
+}
+
+/// The unit normals of a triangle's corners if they differ from that of the face; none if one is no number, or points behind it.
+fn smooth(face: &Corners, normals: [DVec3; 3]) -> Option<[DVec3; 3]> {
+    let flat = face.double_area_vector().normalize();
+    let normals = normals.map(DVec3::normalize_or_zero);
+    let cosines = normals.map(|normal| normal.dot(flat));
+    (cosines.iter().all(|&cosine| cosine > 0.0) && cosines.iter().any(|&cosine| cosine < FLAT))
+        .then_some(normals)
 }
 
 /// Joins the halves of quads. Exporters write the two triangles of a quad one after the other, so consecutive triangles
@@ -167,19 +181,35 @@ fn pair(kept: &[CleanTriangle], step: f64) -> Vec<Surface> {
             (paired[first], paired[second]) = (true, true);
         }
     }
-    let surface = |corners, lightmap| Surface { lightmap, ..Surface::new(corners, MaterialId(0)) };
-    let made = |(at, kept): (usize, &CleanTriangle)| match quads[at] {
-        Some((corners, lightmap)) => Some(surface(Corners::quad(corners), lightmap)),
+    let surface =
+        |corners, lightmap, normals| Surface { lightmap, normals, ..Surface::new(corners, MaterialId(0)) };
+    let made = |(at, own): (usize, &CleanTriangle)| match quads[at] {
+        Some((corners, lightmap, normals)) => Some(surface(Corners::quad(corners), lightmap, normals)),
         None => (!paired[at]).then(|| {
-            let places = kept.lightmap.map(|[a, b, c]| [a, b, c, c]);
-            surface(Corners::triangle(kept.corners), places)
+            let repeated = own.lightmap.map(|[a, b, c]| [a, b, c, c]);
+            surface(Corners::triangle(own.corners), repeated, own.normals.map(|[a, b, c]| [a, b, c, c]))
         }),
     };
     kept.iter().enumerate().filter_map(made).collect()
 }
 
-/// Corners, and their lightmap coordinates.
-type Quad = ([DVec3; 4], Option<[DVec2; 4]>);
+/// The normals of a quad's corners, from the first of its halves that has the corner; none if both are flat.
+fn normals_of(corners: [DVec3; 4], halves: [&CleanTriangle; 2]) -> Option<[DVec3; 4]> {
+    halves.iter().any(|half| half.normals.is_some()).then(|| {
+        corners.map(|corner| {
+            let place = |half: &CleanTriangle| half.corners.iter().position(|&own| own == corner);
+            let (half, at) =
+                halves.iter().find_map(|half| Some((half, place(half)?))).expect("a half has it");
+            half.normals.map_or_else(
+                || Corners::triangle(half.corners).double_area_vector().normalize(),
+                |normals| normals[at],
+            )
+        })
+    })
+}
+
+/// Corners, their lightmap coordinates and their normals.
+type Quad = ([DVec3; 4], Option<[DVec2; 4]>, Option<[DVec3; 4]>);
 
 /// The quad that the two triangles are halves of, starting at the first one's first corner.
 fn halves_of(halves: [&CleanTriangle; 2]) -> Option<Quad> {
@@ -198,7 +228,7 @@ fn halves_of(halves: [&CleanTriangle; 2]) -> Option<Quad> {
                 places.rotate_left([0, 3, 2][i]);
                 places
             };
-            return Some((quad, lightmap.map(turned)));
+            return Some((quad, lightmap.map(turned), normals_of(quad, halves)));
         }
     }
     None
@@ -282,7 +312,14 @@ mod tests {
 
     fn of(corners: Vec<[[f64; 3]; 3]>) -> Surfaces {
         let corners = corners.into_iter().map(|triangle| triangle.map(DVec3::from_array)).collect();
-        surfaces(&Triangles { corners, lightmap: None, textured: None, rounded: true, left_over: 0 })
+        surfaces(&Triangles {
+            corners,
+            lightmap: None,
+            normals: None,
+            textured: None,
+            rounded: true,
+            left_over: 0,
+        })
     }
 
     const A: [f64; 3] = [0.0, 0.0, 0.0];
@@ -361,6 +398,7 @@ mod tests {
             let triangles = Triangles {
                 corners,
                 lightmap: Some(vec![first, second]),
+                normals: None,
                 textured: None,
                 rounded: true,
                 left_over: 0,

@@ -2,7 +2,7 @@
 //! indexed or not. Points and lines have no triangles.
 
 use super::accessors::{check_type, components};
-use super::coordinates::{Use, texture_coordinates, vertex_colours};
+use super::coordinates::{Use, normals, texture_coordinates, vertex_colours};
 use super::document::Document;
 use super::materials::Uses;
 use equilux_formats::texture::TexturedTriangle;
@@ -18,6 +18,8 @@ pub(super) struct Triangles {
     pub(super) corners: Vec<[DVec3; 3]>,
     /// The lightmap coordinates of the corners, if there are any.
     pub(super) lightmap: Option<Vec<[DVec2; 3]>>,
+    /// The normals of the corners, if there are any, as the file has them.
+    pub(super) normals: Option<Vec<[DVec3; 3]>>,
     /// The same triangles with textures and vertex colours, if there are any. All of material 0.
     pub(super) textured: Option<Vec<TexturedTriangle>>,
     /// Whether positions were rounded to f32.
@@ -43,10 +45,13 @@ pub(super) fn triangles(
     };
     let left_over = if primitive.mode() == Mode::Triangles { order.len() % 3 } else { 0 };
     let lightmap = texture_coordinates(document, primitive, 1, positions.len(), mesh)?;
+    let normals = normals(document, primitive, positions.len(), mesh)?;
     let colouring = Colouring::of(document, primitive, uses, positions.len(), mesh)?;
     let vertices_of = || corners_of(order.len()).map(|corners| corners.map(|corner| order[corner]));
     let lightmap =
         lightmap.map(|places| vertices_of().map(|vertices| vertices.map(|vertex| places[vertex])).collect());
+    let normals =
+        normals.map(|normals| vertices_of().map(|vertices| vertices.map(|vertex| normals[vertex])).collect());
     let corners: Vec<[DVec3; 3]> = vertices_of()
         .map(|vertices| finite(document, &accessor, mesh, &positions, vertices))
         .collect::<Result<_>>()?;
@@ -57,6 +62,7 @@ pub(super) fn triangles(
     Ok(Some(Triangles {
         corners,
         lightmap,
+        normals,
         textured,
         rounded: accessor.data_type() == DataType::F32,
         left_over,

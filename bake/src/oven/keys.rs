@@ -3,11 +3,14 @@
 //!
 //! There is a key for each part and for its light, and for each instance a key for the block that couples it with all
 //! others, for the one with the sky, for its self block corrected for occluders inside it, and for its light with that
-//! block. Not every instance has all of these; keys without a file are harmless.
+//! block, and those of the texels of its last lightmap. Not every instance has all of these; keys without a file are harmless.
 
 use crate::elements::repainted;
 use crate::gltf_import::import_scene;
-use crate::oven::placed_keys::{BakedKey, CORRECTED, COUPLING, PlacedKeys, SECONDARY_SOURCES, SOURCES};
+use crate::oven::placed_keys::{
+    BakedKey, CORRECTED, COUPLING, PLACE_LIGHT, PlacedKeys, SECONDARY_SOURCES, SOURCES, TEXEL_LAYOUT,
+    TEXEL_LIGHT, TEXEL_RAYS, texel_block,
+};
 use crate::oven::prepare::{Preparation, Prepared, prepare};
 use crate::oven::{geometry_manifest, light_manifest};
 use equilux_formats::fingerprint::{Key, Manifest};
@@ -50,12 +53,18 @@ pub fn keys_of(scene: &Prepared, store: &Store, file: &Path) -> HashSet<Key> {
         keys.insert(placed.sky_manifest(number).key());
         let target = store.target(&corrected);
         keys.extend([coupling, store.target(&coupling), corrected, target, light(target), light(own)]);
-        // Which places are sources is known after the rows only.
-        let last = |what| {
-            let last = store.last_manifest(&placed.name(file, number, what))?;
-            last.extends(&placed.manifest(number, what)).then(|| last.key())
+        // Which places are sources is known after the rows only, and texels after a lightmap was asked for: what the last run
+        // used is kept, if the scene is still the same.
+        let last = |what, name: &str| {
+            let last = store.last_manifest(&placed.name(file, number, name))?;
+            Some((last.extends(&placed.manifest(number, what)), last.key()))
         };
-        keys.extend([SOURCES, SECONDARY_SOURCES].into_iter().filter_map(last));
+        let keep = |(same, key): (bool, Key)| same.then_some(key);
+        keys.extend([SOURCES, SECONDARY_SOURCES].into_iter().filter_map(|what| keep(last(what, what)?)));
+        for what in [TEXEL_RAYS, TEXEL_LAYOUT, TEXEL_LIGHT, PLACE_LIGHT] {
+            let blocks = (0..).map_while(|block| last(what, &texel_block(what, block)));
+            keys.extend(blocks.filter_map(keep));
+        }
     }
     keys
 }

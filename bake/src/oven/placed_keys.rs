@@ -4,7 +4,7 @@ use super::KERNEL_VERSION;
 use crate::geometry::rounded_placement::RoundedPlacement;
 use crate::treecode::Resolution;
 use equilux_formats::fingerprint::{Key, Manifest};
-use equilux_formats::{Instance, PartId};
+use equilux_formats::{Instance, PartId, TexelChoice};
 use glam::DAffine3;
 use std::collections::HashMap;
 use std::path::Path;
@@ -22,6 +22,20 @@ pub const SKY_CELLS: usize = 12;
 pub const SOURCES: &str = "light of sources";
 /// The form factors of an instance to the places that sources light brightly, in manifests and in the cache.
 pub const SECONDARY_SOURCES: &str = "light of secondary sources";
+
+/// The rays of texels of lightmaps, in manifests and in the cache.
+pub const TEXEL_RAYS: &str = "rays of texels at knots";
+/// How charts are divided into texels that have rays, in manifests and in the cache.
+pub const TEXEL_LAYOUT: &str = "knots of rays of texels";
+/// The form factors of texels to lights with sharp shadows, in manifests and in the cache.
+pub const TEXEL_LIGHT: &str = "light of texels";
+/// The form factors of places that rays of texels see, in manifests and in the cache.
+pub const PLACE_LIGHT: &str = "light of places near texels";
+
+/// The name of such a block of texels in the cache: an instance has as many of each kind as `number` goes up to.
+pub fn texel_block(what: &str, number: usize) -> String {
+    format!("{what} {number}")
+}
 
 /// The fields of a part that a block's manifest records.
 #[derive(Debug, Clone, Copy)]
@@ -122,7 +136,14 @@ impl PlacedKeys {
             if known.is_none() {
                 parts.push(part);
             }
-            instances.push(Instance { name, part: id, placement, emission_scale: 1.0, repainted: vec![] });
+            instances.push(Instance {
+                name,
+                part: id,
+                placement,
+                emission_scale: 1.0,
+                repainted: vec![],
+                texels: TexelChoice::default(),
+            });
         }
         let (twins, scene) = (twins(&instances), Some(manifest.clone()));
         Some(Self { instances, parts, twins, resolution: self.resolution, scene })

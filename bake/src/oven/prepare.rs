@@ -12,7 +12,7 @@ use crate::world::World;
 use equilux_formats::texture::TexturedTriangle;
 use equilux_formats::{
     Element, Error, Geometry, Instance, LocalSolver, Material, MaterialId, Optics, Part, PartId, Result,
-    Scene, Tints,
+    Scene, TexelChoice, Tints,
 };
 use glam::DAffine3;
 
@@ -290,6 +290,7 @@ fn divided(
             placement: DAffine3::IDENTITY,
             emission_scale: 1.0,
             repainted: vec![],
+            texels: TexelChoice::default(),
         });
         let solver = wanted.local_solver.unwrap_or_else(|| default_solver(geometry.unknowns().elements()));
         parts.push(PreparedPart {

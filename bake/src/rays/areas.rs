@@ -96,9 +96,15 @@ impl Cover<'_> {
         self.touches(place, normal) || 2 * hidden.count() >= all
     }
 
-    /// Whether that is possible, from a look straight ahead and in one of four slanted directions.
-    pub fn may_be_covered(self, place: DVec3, normal: DVec3, direction: usize) -> bool {
-        self.touches(place, normal) || self.hides(place, slanted(normal, STEEP[1], direction))
+    /// Whether that is possible, from a look straight ahead and one that is slanted towards `inside`: where the border of what
+    /// covers a piece cuts off this place, the border is there.
+    pub fn may_be_covered(self, place: DVec3, normal: DVec3, inside: DVec3) -> bool {
+        let across = (inside - place).reject_from_normalized(normal).normalize_or_zero();
+        let direction = match across == DVec3::ZERO {
+            true => slanted(normal, STEEP[1], 0),
+            false => normal * STEEP[1] + across * (1.0 - STEEP[1] * STEEP[1]).sqrt(),
+        };
+        self.touches(place, normal) || self.hides(place, direction)
     }
 
     fn hides(self, place: DVec3, direction: DVec3) -> bool {

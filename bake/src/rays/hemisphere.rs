@@ -34,15 +34,40 @@ struct Piece {
     corner: DVec3,
     edges: [DVec3; 2],
     is_parallelogram: bool,
+    /// Tangents and normal for light.
     frame: [DVec3; 3],
-    /// How far in front of it rays start.
-    in_front: f64,
+    /// From it to where rays start.
+    lift: DVec3,
+}
+
+/// The smooth surface for which a flat piece stands, at one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfacePoint {
+    /// Its unit normal.
+    pub normal: DVec3,
+    /// From the piece to it, metres.
+    pub lift: DVec3,
 }
 
 impl Emitters {
     /// The area of these elements. Their faces may be as far off their planes as their own corners.
     pub fn new<'a>(elements: impl IntoIterator<Item = &'a Element>) -> Self {
         Self::beyond(elements.into_iter().map(|element| (element, element.corners.as_slice())))
+    }
+
+    /// The area of these elements, each with the smooth surface for which it stands. With normals of their own and no lifts, the
+    /// same as [`Emitters::new`].
+    pub fn curved(elements: &[(Element, SurfacePoint)]) -> Self {
+        let pieces = elements.iter().flat_map(|(element, SurfacePoint { normal, lift })| {
+            let raised = pieces_beyond(element, element.corners.as_slice());
+            raised.map(move |piece| match *normal == element.normal {
+                true => piece,
+                false => Piece { frame: frame(*normal), lift: piece.lift + *lift, ..piece },
+            })
+        });
+        let numbers = elements.iter().map(|(element, _)| number_at(element.centroid));
+        let number = numbers.fold(0u32, u32::wrapping_add);
+        Self::of(pieces.collect(), number)
     }
 
     /// The area of these elements, each on a face, whose plane goes through its first corner.
@@ -54,18 +79,15 @@ impl Emitters {
     /// Corners that are stored in f32 lie off the plane of their face; for small elements, by more than [`IN_FRONT`] of their
     /// size. Rays that start behind that plane would end on their own face.
     fn beyond<'a>(elements: impl IntoIterator<Item = (&'a Element, &'a [DVec3])>) -> Self {
-        let raised = |(element, points): (&'a Element, &'a [DVec3])| {
-            let height = |p: &DVec3| element.normal.dot(*p - element.corners.as_slice()[0]);
-            let top = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
-            let bottom = element.corners.as_slice().iter().map(height).fold(f64::INFINITY, f64::min);
-            let raised = (top - bottom).max(0.0);
-            pieces(element).into_iter().map(move |piece| Piece { in_front: piece.in_front + raised, ..piece })
-        };
         let mut number = 0u32;
         let numbered = elements.into_iter().inspect(|(element, _)| {
             number = number.wrapping_add(number_at(element.centroid));
         });
-        let pieces: Vec<Piece> = numbered.flat_map(raised).collect();
+        let pieces = numbered.flat_map(|(element, points)| pieces_beyond(element, points)).collect();
+        Self::of(pieces, number)
+    }
+
+    fn of(pieces: Vec<Piece>, number: u32) -> Self {
         let mut sum = 0.0;
         let areas = pieces.iter().map(Piece::area);
         let mut until: Vec<f64> = areas
@@ -177,8 +199,8 @@ fn turn(seed: u32) -> (f64, f64) {
 
 impl Piece {
     fn new(corner: DVec3, edges: [DVec3; 2], is_parallelogram: bool, normal: DVec3) -> Self {
-        let in_front = IN_FRONT * (edges[0].length() + edges[1].length());
-        Self { corner, edges, is_parallelogram, frame: frame(normal), in_front }
+        let lift = normal * (IN_FRONT * (edges[0].length() + edges[1].length()));
+        Self { corner, edges, is_parallelogram, frame: frame(normal), lift }
     }
 
     fn corners(&self) -> [DVec3; 4] {
@@ -204,8 +226,17 @@ impl Piece {
             let third = |x: f64| INSET + x * (1.0 - 3.0 * INSET);
             (third(1.0 - root), third(root * v))
         };
-        self.corner + a * u + b * v + self.frame[2] * self.in_front
+        self.corner + a * u + b * v + self.lift
     }
+}
+
+/// The pieces of an element, with rays that start in front of the planes through these points that are parallel to it.
+fn pieces_beyond(element: &Element, points: &[DVec3]) -> impl Iterator<Item = Piece> + use<> {
+    let height = |p: &DVec3| element.normal.dot(*p - element.corners.as_slice()[0]);
+    let top = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
+    let bottom = element.corners.as_slice().iter().map(height).fold(f64::INFINITY, f64::min);
+    let raised = element.normal * (top - bottom).max(0.0);
+    pieces(element).into_iter().map(move |piece| Piece { lift: piece.lift + raised, ..piece })
 }
 
 /// The pieces of an element: itself, or the two triangles of a quad that is no parallelogram.

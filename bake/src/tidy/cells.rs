@@ -5,7 +5,8 @@
 use crate::geometry::aabb::Aabb;
 use crate::geometry::polygon::{Clipped, Polygon, clip, quads_and_triangles};
 use equilux_formats::{Corners, Part, Surface};
-use glam::{DVec2, DVec3};
+use glam::DVec3;
+use std::ops::{Add, Mul};
 
 /// One side of a convex polygon; corners run counter-clockwise as seen from that side.
 #[derive(Debug, Clone)]
@@ -120,25 +121,31 @@ impl Cell {
     /// The cell as surfaces of three or four corners that are otherwise like `whole`.
     fn surfaces(&self, whole: &Surface) -> Vec<Surface> {
         let pieces = quads_and_triangles(&self.corners).into_iter().map(|corners| Surface {
-            lightmap: whole.lightmap.map(|places| places_of(&corners, &whole.corners, places)),
+            lightmap: whole.lightmap.map(|places| mapped(&corners, &whole.corners, places)),
+            normals: whole.normals.map(|normals| mapped(&corners, &whole.corners, normals)),
             back_hidden: whole.back_hidden || !(self.front && self.back),
+            texels: whole.texels,
             ..Surface::new(corners, whole.material)
         });
         pieces.map(|piece| if self.front { piece } else { piece.flipped() }).collect()
     }
 }
 
-/// The lightmap coordinates of a piece's corners, by the affine map of the whole's first three corners.
-fn places_of(piece: &Corners, whole: &Corners, places: [DVec2; 4]) -> [DVec2; 4] {
+/// The values of a piece's corners, by the affine map of those of the whole's first three corners.
+fn mapped<T: Copy + Add<Output = T> + Mul<f64, Output = T>>(
+    piece: &Corners,
+    whole: &Corners,
+    values: [T; 4],
+) -> [T; 4] {
     let [a, b, c] = std::array::from_fn(|i| whole.as_slice()[i]);
     let across = (b - a).cross(c - a);
     let share = |u: DVec3, v: DVec3| u.cross(v).dot(across) / across.length_squared();
-    let place = |p: DVec3| {
+    let value = |p: DVec3| {
         let (second, third) = (share(p - a, c - a), share(b - a, p - a));
-        places[0] * (1.0 - second - third) + places[1] * second + places[2] * third
+        values[0] * (1.0 - second - third) + values[1] * second + values[2] * third
     };
     let corners = piece.as_slice();
-    std::array::from_fn(|i| place(corners[i.min(corners.len() - 1)]))
+    std::array::from_fn(|i| value(corners[i.min(corners.len() - 1)]))
 }
 
 /// Approximate smallest width of a polygon: its area over its longest edge.

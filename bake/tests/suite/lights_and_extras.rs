@@ -2,7 +2,7 @@
 
 use crate::gltf::{Folder, Gltf, import, noted};
 use equilux_bake::gltf_import::import_scene;
-use equilux_formats::{LightKind, LocalSolver, Rgb};
+use equilux_formats::{LightKind, LocalSolver, Rgb, TexelChoice};
 use glam::{DAffine3, DVec3};
 use serde_json::json;
 use std::f64::consts::PI;
@@ -106,4 +106,60 @@ fn part_files_stand_at_their_nodes() {
     let sources =
         ["hall.glb", "parts/lamp.glb", "parts/inner/stand.glb"].map(|name| folder.0.path().join(name));
     assert_eq!(scene.sources, sources, "each file is read once");
+}
+
+/// Instances of one part may have other texels; within a part each surface has the choice of its node.
+#[test]
+fn texels_are_chosen_by_the_next_node_above_and_part_no_parts() {
+    let mut gltf = Gltf::with_square();
+    gltf.nodes(json!([
+        { "name": "level", "children": [1, 2, 3], "extras": { "texel_size": 0.5 } },
+        { "name": "1 near", "mesh": 0, "extras": { "texel_size": 0.01 } },
+        { "name": "2 far", "mesh": 0, "translation": [0, 0, 3], "extras": { "lightmap": false } },
+        { "name": "3 both", "mesh": 0, "translation": [0, 0, 6], "children": [4] },
+        { "mesh": 0, "translation": [0, 0, 1], "extras": { "texel_size": 0.02, "lightmap": true } },
+    ]));
+    let scene = import(&gltf);
+    let [near, far, both] = &scene.instances[..] else { panic!("three, found {:?}", scene.instances) };
+    assert_eq!(near.part, far.part, "texels are no part of a part");
+    let choice = |size: Option<f64>, any: Option<bool>| TexelChoice { size, any };
+    assert_eq!(near.texels, choice(Some(0.01), None));
+    assert_eq!(far.texels, choice(Some(0.5), Some(false)), "what it does not say, the node above does");
+    assert_eq!(both.texels, choice(Some(0.5), None));
+    let own: Vec<_> = scene.parts[both.part.index()].surfaces.iter().map(|s| s.texels).collect();
+    assert_eq!(own, [TexelChoice::default(), choice(Some(0.02), Some(true))]);
+}
+
+#[test]
+fn what_is_not_to_be_baked_is_as_if_it_were_not_there() {
+    let mut gltf = Gltf::with_square();
+    gltf.nodes(json!([
+        { "name": "level", "children": [1, 2] },
+        { "name": "floor", "mesh": 0 },
+        { "name": "blocker", "mesh": 0, "translation": [0, 0, 3], "children": [3], "extras": { "bake": false } },
+        { "name": "below it", "extras": { "part": "missing.glb" } },
+        { "name": "rig", "mesh": 0, "extras": { "bake": false } },
+    ]));
+    let scene = import(&gltf);
+    let names: Vec<&str> = scene.instances.iter().map(|instance| instance.name.as_str()).collect();
+    assert_eq!(names, ["floor"], "the only root that is left wraps the others");
+    let notes: Vec<&String> = scene.notes.iter().filter(|note| note.contains("\"bake\": false")).collect();
+    assert!(notes.len() == 1 && notes[0].contains("blocker") && notes[0].contains("rig"), "{notes:?}");
+}
+
+#[test]
+fn wrong_choices_of_texels_are_named() {
+    for (key, value, expected) in [
+        ("texel_size", json!(0), "above 0"),
+        ("texel_size", json!("fine"), "above 0"),
+        ("lightmap", json!("no"), "true or false"),
+        ("bake", json!(0), "true or false"),
+    ] {
+        let mut gltf = Gltf::with_square();
+        gltf.nodes(json!([{ "name": "wall", "mesh": 0, "extras": { key: value } }]));
+        let folder = Folder::new();
+        let file = folder.write("scene.glb", gltf.glb());
+        let error = import_scene(&file).expect_err(key).to_string();
+        assert!(["wall", key, expected, "scene.glb"].iter().all(|word| error.contains(word)), "{error}");
+    }
 }
