@@ -60,6 +60,12 @@ struct ModelPrimitive {
     texels: Option<(usize, usize)>,
 }
 
+/// The triangles of one primitive: their material, and the image of their texels, if they have any.
+type Group = (MaterialId, Option<usize>);
+
+/// A corner, and its place in the image.
+type Vertex = (Vec3, Vec2);
+
 #[derive(Default)]
 struct ModelDocument {
     vertices: Vec<u8>,
@@ -74,7 +80,7 @@ impl ModelDocument {
     /// The triangles of a layout.
     fn add_vertices(&mut self, lightmap: &Lightmap, layout: usize) -> Vec<ModelPrimitive> {
         let layout = &lightmap.atlas.layouts[layout];
-        let mut groups: BTreeMap<(MaterialId, Option<usize>), Vec<(Vec3, Vec2)>> = BTreeMap::new();
+        let mut groups: BTreeMap<Group, Vec<Vertex>> = BTreeMap::new();
         for ((chart, grid), spot) in layout.charts.iter().zip(&layout.grids).zip(&layout.spots) {
             let group = groups.entry((chart.material, Some(spot.image))).or_default();
             let size = UVec2::from(layout.sheets[spot.image]) - 2 * layout.border;
@@ -88,7 +94,7 @@ impl ModelDocument {
             let corners = triangles(side.corners.as_slice()).map(|p| (p.as_vec3(), Vec2::ZERO));
             groups.entry((side.material, None)).or_default().extend(corners);
         }
-        let primitive = |((material, sheet), vertices): ((MaterialId, Option<usize>), Vec<(Vec3, Vec2)>)| {
+        let primitive = |((material, sheet), vertices): (Group, Vec<Vertex>)| {
             let positions = self.add_accessors(&vertices, sheet.is_some());
             ModelPrimitive { material, positions, texels: sheet.map(|sheet| (sheet, positions + 1)) }
         };
@@ -96,7 +102,7 @@ impl ModelDocument {
     }
 
     /// Adds the accessor of positions, and after it that of coordinates if there are any; returns the first.
-    fn add_accessors(&mut self, vertices: &[(Vec3, Vec2)], with_coordinates: bool) -> usize {
+    fn add_accessors(&mut self, vertices: &[Vertex], with_coordinates: bool) -> usize {
         let (start, first) = (self.vertices.len(), self.accessors.len());
         let bound = |start: Vec3, pick: fn(Vec3, Vec3) -> Vec3| {
             vertices.iter().map(|v| v.0).fold(start, pick).to_array()

@@ -96,10 +96,13 @@ struct ImportedPart {
 struct Recipe {
     file: Option<PathBuf>,
     /// Mesh, placement, look and texels of each node.
-    nodes: Vec<(usize, [u64; 12], LookRecipe, (Option<u64>, Option<bool>))>,
+    nodes: Vec<(usize, [u64; 12], LookRecipe, TexelRecipe)>,
     settings: (Option<u64>, Option<LocalSolver>),
     linear: [u64; 9],
 }
+
+/// The size of texels, and whether there are any.
+type TexelRecipe = (Option<u64>, Option<bool>);
 
 /// The contents of a node.
 enum Contents<'a> {
