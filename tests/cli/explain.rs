@@ -63,10 +63,10 @@ fn assemble_says_in_a_sentence_what_became_of_each_part_and_block() {
         &[
             "part table: 22 elements in 1 place, solved by GaussSeidel; form factors computed: never",
             &format!("; light {new}"),
-            &format!("inside walls is table, light, crate: its own form factors {new}"),
+            &format!("inside walls is crate, light, table: its own form factors {new}"),
             &format!("coupling of table {new}; left out: sealed, of which it sees nothing"),
             &format!(
-                "coupling of sealed {new}; left out: walls, table, light, crate, of which it sees nothing"
+                "coupling of sealed {new}; left out: crate, light, table, walls, of which it sees nothing"
             ),
         ],
     );

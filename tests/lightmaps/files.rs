@@ -110,7 +110,7 @@ fn the_list_names_images_by_their_contents_and_a_place_for_each_node() {
     assert_eq!(list["texel_size"], json!(0.05));
     let names: Vec<&str> =
         list["nodes"].as_array().expect("nodes").iter().filter_map(|n| n["name"].as_str()).collect();
-    assert_eq!(names, ["walls", "table", "light", "crate"]);
+    assert_eq!(names, ["crate", "light", "table", "walls"]);
     for node in list["nodes"].as_array().expect("nodes") {
         let [offset, scale] = ["offset", "scale"]
             .map(|key| [0, 1].map(|i: usize| node["rectangles"][0][key][i].as_f64().expect("a number")));
