@@ -166,7 +166,7 @@ fn with_watch_the_page_follows_edits_and_stop_ends_one_exchange() {
 
     Model::of(&furnished()).write(&workshop.path("scene.glb"));
     let status =
-        page.wait(|status, _| status["phase"] == "done" && status["instances"][3]["name"] == "crate");
+        page.wait(|status, _| status["phase"] == "done" && status["instances"][0]["name"] == "crate");
     assert_eq!(status["placed"], status["run"]);
     assert_eq!(page.post("close").status, 204);
     assert_eq!(page.code(), Some(0));

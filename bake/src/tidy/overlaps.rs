@@ -1,8 +1,9 @@
-//! Removes overlaps of coplanar surfaces that face the same way: the first surface of the scene stays, and what it
-//! covers of later ones is cut away. Otherwise every row that sees one would count both.
+//! Removes overlaps of coplanar surfaces that face the same way: one of them stays, and what it covers of the others is cut away.
+//! Otherwise every row that sees one would count both.
 //!
-//! Overlaps within a part are cut for all of its instances. An instance that another instance covers gets a new part,
-//! shared by all instances that are covered in the same way.
+//! Overlaps within a part are cut for all of its instances, and the first surface stays. Of instances, the larger keeps its
+//! surfaces, so that a room remains the part that it is elsewhere whatever stands in it; of equal ones, the first. An instance
+//! that another instance covers gets a new part, shared by all instances that are covered in the same way.
 
 use super::bounds::{part_bounds, placed_bounds};
 use super::cells::{Facing, seen_pieces};
@@ -37,8 +38,8 @@ pub(super) fn cut_overlaps(scene: &mut Scene) {
     };
     covered.truncate(NAMED);
     scene.notes.push(format!(
-        "faces lie on others in one plane and look the same way: {}{more}; the first face of each place was kept, and what it covers of \
-         the others was cut away",
+        "faces lie on others in one plane and look the same way: {}{more}; one face of each place was kept, that of the larger \
+         part, and what it covers of the others was cut away",
         covered.join(", ")
     ));
 }
@@ -117,20 +118,25 @@ fn cut(part: &Part, covers: &BTreeMap<usize, Vec<Facing>>, tolerance: f64) -> Ve
     part.surfaces.iter().enumerate().flat_map(pieces).collect()
 }
 
-/// Cuts away what earlier instances cover, and returns phrases for the note.
+/// Cuts away what larger instances cover, and returns phrases for the note.
 fn cut_across(scene: &mut Scene) -> Vec<String> {
     let bounds: Vec<Aabb> = scene.instances.iter().map(|i| placed_bounds(&scene.parts, i)).collect();
     let tolerances: Vec<f64> = bounds.iter().map(|b| planes::tolerance([&b.low, &b.high])).collect();
     let tree = BoxTree::new(&bounds);
     let (mut variants, mut covered) = (Variants::default(), Vec::new());
-    for number in 0..scene.instances.len() {
+    let mut order: Vec<usize> = (0..bounds.len()).collect();
+    order.sort_by(|&a, &b| bounds[b].diagonal().total_cmp(&bounds[a].diagonal()));
+    let mut rank = vec![0; order.len()];
+    order.iter().enumerate().for_each(|(place, &number)| rank[number] = place);
+    for number in order {
         let widest = tolerances.iter().copied().fold(0.0, f64::max);
         let near = tree.meeting(bounds[number].grown(widest)).into_iter().map(|other| other as usize);
         let tolerance = |other: usize| tolerances[number].max(tolerances[other]);
-        let is_near =
-            |&other: &usize| other < number && meet(&bounds[other], &bounds[number], tolerance(other));
+        let is_near = |&other: &usize| {
+            rank[other] < rank[number] && meet(&bounds[other], &bounds[number], tolerance(other))
+        };
         let mut near: Vec<usize> = near.filter(is_near).collect();
-        near.sort_unstable();
+        near.sort_unstable_by_key(|&other| rank[other]);
         let mut covers: BTreeMap<usize, Vec<Facing>> = BTreeMap::new();
         for other in near {
             let found = covered_by(scene, number, other, tolerance(other));
