@@ -3,6 +3,7 @@
 use equilux_assemble::equation::Equation;
 use equilux_assemble::equation::environment::Environment;
 use equilux_assemble::exchange::listener::Unobserved;
+use equilux_assemble::placed_parts::PlacedParts;
 use equilux_bake::elements::ElementSize;
 use equilux_bake::elements::bisect::Cut;
 use equilux_bake::gltf_import::import_scene;
@@ -43,22 +44,34 @@ fn counts(workshop: &Workshop, division: Division) -> Counts {
     let environment = Environment::read(None, None).expect("no sky");
     let equation = Equation::new(&oven, &scene, prepared, &environment, &Unobserved).expect("blocks");
     let placed = &equation.placed;
-    let elements = &placed.world.elements;
-    // Every element is an unknown, in the same order.
-    assert_eq!(placed.columns(), elements.len());
+    let places = unknowns(placed);
     let mut all = Counts::new();
     for (k, blocks) in equation.coupled.iter().enumerate() {
-        let own = placed.world.elements_of(k);
+        let own = placed.columns_of(k);
         let self_block = blocks.self_block(&placed.part_of(k).part.self_block);
-        for i in 0..own.len() {
+        for (i, place) in places[own.clone()].iter().enumerate() {
+            let Some(place) = *place else { continue };
             let inside = self_block.row(i).map(|(column, f)| (own.start + column, f));
-            let row = inside.chain(blocks.coupling.row(i)).map(|(column, f)| (place(&elements[column]), f));
+            let row = inside.chain(blocks.coupling.row(i));
+            let row = row.filter_map(|(column, f)| Some((places[column]?, f)));
             let sky = blocks.sky.as_ref().expect("by rays").row(i);
-            all.insert(place(&elements[own.start + i]), (row.collect(), sky.collect()));
+            let known = all.insert(place, (row.collect(), sky.collect()));
+            assert!(known.is_none(), "every element has a place of its own");
         }
     }
-    assert_eq!(all.len(), elements.len(), "every element has a place of its own");
     all
+}
+
+/// The places of the unknowns that are one element; pieces that planes cut off may be joined to patches.
+fn unknowns(placed: &PlacedParts) -> Vec<Option<Place>> {
+    let mut members: Vec<Vec<Place>> = vec![vec![]; placed.columns()];
+    for k in 0..placed.instances.len() {
+        let (first, own) = (placed.columns_of(k).start, placed.world.elements_of(k));
+        for (i, element) in placed.world.elements[own].iter().enumerate() {
+            members[first + placed.unknown_of(k, i)].push(place(element));
+        }
+    }
+    members.into_iter().map(|own| if let [one] = own[..] { Some(one) } else { None }).collect()
 }
 
 proptest! {
