@@ -96,7 +96,10 @@ impl Page {
     /// The stream of events from now on.
     pub fn news(&self) -> impl Iterator<Item = Value> + use<> {
         let stream = self.open("GET", &self.path("events"), &[&format!("Host: {}", self.host())]);
+        // Lines without news keep the connection alive, so its time limit ends no wait.
+        let start = Instant::now();
         let lines = BufReader::new(stream).lines().map_while(Result::ok);
+        let lines = lines.take_while(move |_| start.elapsed() < PATIENCE);
         lines.filter_map(|line| serde_json::from_str(line.strip_prefix("data: ")?).ok())
     }
 
