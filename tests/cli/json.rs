@@ -88,6 +88,11 @@ fn assemble_prints_one_object_with_every_key() {
         audit["rows"] == 9 && audit["rms_rel"].as_f64() > Some(0.0),
         "rows by rays beside exact ones: {audit}"
     );
+    let unmeasured = object(&[&arguments[..], &["--exact-rows", "0"]].concat(), "assemble")["error"].clone();
+    assert!(
+        unmeasured["audit"].is_null() && unmeasured["noise"].is_null(),
+        "nothing was to be measured: {unmeasured}"
+    );
     let report = object(&[&arguments[..], &["--rows", "exact"]].concat(), "assemble");
     let missing: Vec<_> = KEYS.iter().filter(|key| report.pointer(key).is_none()).collect();
     assert!(missing.is_empty(), "missing {missing:?} in {report}");

@@ -38,7 +38,7 @@ pub struct Audit {
 }
 
 /// Compares so many unknowns, evenly over the area. `radiosity` and `irradiance` of all elements, W/m². None if rows are exact, no
-/// rows are asked for, no light arrives, or the monitor was stopped.
+/// light arrives, or the monitor was stopped.
 pub fn audit(
     equation: &Equation,
     radiosity: &[Rgb],

@@ -13,10 +13,10 @@ use crate::exchange::listener::Unobserved;
 use crate::exchange::system::InstanceSystem;
 use crate::lightmap::atlas::Atlas;
 use crate::outputs::{OutputRecord, RESULT, RunResults, write_all};
-use crate::proof::audit::audit;
-use crate::proof::noise::noise;
-use crate::proof::prove;
+use crate::proof::audit::{Audit, audit};
+use crate::proof::noise::{Noise, noise};
 use crate::proof::sample::ExactRows;
+use crate::proof::{Proof, prove};
 use crate::report::Report;
 use crate::report::fates::explained;
 use crate::report::light_notes::light_notes;
@@ -24,7 +24,7 @@ use crate::report::process::{cpu_seconds, peak_rss};
 use crate::report::summary::{HIDDEN_SHELLS, ReportSources, summary};
 use crate::report::unlit::unlit_notes;
 use crate::solve::settings::SolveSettings;
-use crate::solve::solve_prepared;
+use crate::solve::{Solved, solve_prepared};
 use crate::verify::{Classic, classic};
 use equilux_bake::gltf_import::import_scene;
 use equilux_bake::monitor::Monitor;
@@ -48,11 +48,7 @@ pub fn run(job: &Job, monitor: &Monitor) -> Result<Report> {
 pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Result<Report> {
     let start = Instant::now();
     let Job { settings, outputs: requests, .. } = job;
-    let (mut scene, prepared) = opened(job)?;
-    if prepared.resolution.rays.is_none() {
-        // Exact rows know planes only.
-        scene.flatten_normals();
-    }
+    let (scene, prepared) = opened(job)?;
     let atlas = requests.lightmaps.map(|options| Atlas::of(&scene, &options)).transpose()?;
     let (places, against) = job.tables(scene.origin)?;
     let environment = settings.environment()?;
@@ -65,11 +61,7 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     let (solve, solve_cpu) = (start.elapsed().as_secs_f64(), cpu_seconds());
     let (equation, outcome) = (&solved.equation, &solved.outcome);
     let (placed, systems) = (&equation.placed, equation.systems());
-    let exact_rows = requests.exact_rows.unwrap_or(ExactRows::ENOUGH);
-    let proof = prove(placed, &systems, outcome, exact_rows, monitor);
-    let (radiosity, irradiance) = (solved.radiosity(), &solved.irradiance);
-    let noise = (exact_rows.of(1) > 0).then(|| noise(equation, radiosity, irradiance)).flatten();
-    let audit = requests.exact_rows.and_then(|rows| audit(equation, radiosity, irradiance, rows, monitor));
+    let (proof, noise, audit) = errors(&solved, &systems, requests.exact_rows, monitor);
     let peak = peak_rss();
     let compare = || unless_stopped(classic(placed, &equation.driven_optics(), monitor));
     let classic = if requests.verify { compare()? } else { None };
@@ -113,6 +105,24 @@ pub fn run_observed(job: &Job, monitor: &Monitor, observer: &dyn Observer) -> Re
     Ok(report)
 }
 
+/// What is proved and measured of the error of clusters, or of rows by rays; `asked`: the rows to compare with exact ones.
+fn errors(
+    solved: &Solved,
+    systems: &[InstanceSystem],
+    asked: Option<ExactRows>,
+    monitor: &Monitor,
+) -> (Option<Proof>, Option<Noise>, Option<Audit>) {
+    let equation = &solved.equation;
+    let rows = asked.unwrap_or(ExactRows::ENOUGH);
+    let proof = prove(&equation.placed, systems, &solved.outcome, rows, monitor);
+    if rows.of(1) == 0 {
+        return (proof, None, None);
+    }
+    let (radiosity, irradiance) = (solved.radiosity(), &solved.irradiance);
+    let audit = asked.and_then(|rows| audit(equation, radiosity, irradiance, rows, monitor));
+    (proof, noise(equation, radiosity, irradiance), audit)
+}
+
 /// The scene, and its parts divided into elements. Fails where the job is not possible.
 fn opened(job: &Job) -> Result<(Scene, Prepared)> {
     let mut scene = import_scene(&job.scene)?;
@@ -120,6 +130,10 @@ fn opened(job: &Job) -> Result<(Scene, Prepared)> {
     let prepared = prepare(&scene, &job.settings.preparation)?;
     scene.notes.extend(lost_digits_note(&scene, prepared.element_size));
     job.check(&scene)?;
+    if prepared.resolution.rays.is_none() {
+        // Exact rows know planes only.
+        scene.flatten_normals();
+    }
     Ok((scene, prepared))
 }
 
