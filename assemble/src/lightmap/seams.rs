@@ -125,14 +125,13 @@ fn share_inside(texel: DVec2, [from, to]: [DVec2; 2], inside: DVec2) -> f64 {
     (0.5 + height(texel) * height(inside).signum()).clamp(0.0, 1.0)
 }
 
-/// The differences of lookups that must vanish, for all seams of the scene, and their texels.
-fn differences(
+/// The sides of all instances in scene coordinates, and the tile and plane of each. Those without texels have no seams, but may
+/// separate the light on others.
+fn placed_sides(
     atlas: &Atlas,
     instances: &[Instance],
     tiles: &[Tile],
-    starts: &[usize],
-) -> (Vec<DifferenceRow>, HashMap<usize, SeamTexel>) {
-    // Sides without texels have no seams, but may separate the light on others.
+) -> (Vec<SurfaceSide>, Vec<Option<(usize, usize)>>) {
     let (mut sides, mut whose) = (Vec::new(), Vec::new());
     for (number, tile) in tiles.iter().enumerate() {
         let placement = instances[tile.instance].placement;
@@ -145,6 +144,17 @@ fn differences(
         sides.extend(own.iter().map(|side| SurfaceSide::of(&side.surface().placed(instance.placement))));
     }
     whose.resize(sides.len(), None);
+    (sides, whose)
+}
+
+/// The differences of lookups that must vanish, for all seams of the scene, and their texels.
+fn differences(
+    atlas: &Atlas,
+    instances: &[Instance],
+    tiles: &[Tile],
+    starts: &[usize],
+) -> (Vec<DifferenceRow>, HashMap<usize, SeamTexel>) {
+    let (sides, whose) = placed_sides(atlas, instances, tiles);
     let seams = smooth_contacts(&sides).into_iter().filter_map(|contact: Contact| {
         let [a, b] = [whose[contact.sides[0]]?, whose[contact.sides[1]]?];
         let [first, second] = contact.sides.map(|side| contact.ends.map(|end| sides[side].normal_at(end)));
